@@ -4,10 +4,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "sim/particles.h"
+#include "sim/point_grid.h"
 #include "sim/shell.h"
 
 namespace sim {
@@ -17,7 +19,6 @@ struct ContactSettings {
   double stiffness = 5e7;    // Pa/m, sum of both directions
   double damping = 0;        // of critical, on the approach speed
   double wall_distance = 0;  // m from the mid-surface to the wall's true surface; 0 = 0.5 l0
-  double friction = 0;
 };
 
 template <int D>
@@ -36,25 +37,30 @@ struct ContactReport {
 // Contact of all shell bodies with one another (not with themselves) and with the wall.
 template <int D>
 struct Contact {
+  // One shell row near one other body (or the wall: other == bodies), with its candidates [first, last).
+  struct Row {
+    std::int32_t particle = 0, other = 0, first = 0, last = 0;
+  };
   ContactSettings settings;
-  double spacing = 0;  // m, l0
-  double reach = 0;    // m, support of w
-  double skin = 0;     // m, how far anything may move before the search is repeated
+  double spacing = 0;     // m, of the leaflets' particles
+  double reach = 0;       // m, support of w against leaflets
+  double wall_reach = 0;  // m, against the wall
+  double skin = 0;        // m, how far anything may move before the search is repeated
   WallSurface<D> wall;
   std::int32_t bodies = 0;
-  std::vector<std::int8_t> side;  // bodies x bodies: +1 where row bodies start on the + side of column bodies, 0 no contact
-  std::vector<float> limit;       // rows x (bodies + 1): contact distance of a row with a body (last: the wall), m; 0 = exempt
-  // search result (rebuilt when something moved by more than half the skin)
+  std::vector<std::int8_t> side;  // bodies x bodies: +1 where the row's body starts on the + side of the column's, -1, 0 no contact
+  std::vector<double> limit;      // shell rows x (bodies + 1): contact distance with a body (last: the wall), m; 0 = exempt
+  // Search result; a row keeps it until something moved by more than half the skin.
   std::vector<Vector<D>> searched_position;
-  struct Row {
-    std::int32_t particle, other, first, last;
-  };  // other: body index, or `bodies` for the wall
+  std::shared_ptr<const PointGrid<D>> wall_grid;
   std::vector<Row> rows;
-  std::vector<std::int32_t> candidate;                                      // rows' candidates: shell rows or wall indices
-  std::vector<float> share;                                                 // per candidate: normalised weight, refreshed each evaluation
-  std::vector<Vector<D>> row_force;                                         // per row
-  std::vector<std::int32_t> reverse_start, reverse_candidate, reverse_row;  // per shell row
   std::vector<std::int32_t> row_start;                                      // per shell row: its own rows
+  std::vector<std::int32_t> candidate;                                      // shell rows or wall indices
+  std::vector<std::int32_t> reverse_start, reverse_candidate, reverse_row;  // per shell row: where it is a candidate
+  // Scratch of one evaluation.
+  std::vector<double> share;         // per candidate: w_j / sum w
+  std::vector<Padded<D>> row_force;  // N on the row's particle
+  std::vector<double> row_overlap;   // m, contact distance minus gap; <= 0 no contact
 };
 
 // Sides and contact distances from the initial positions. The wall from the particles of Kind::wall no deeper than one spacing.
@@ -64,6 +70,10 @@ Contact<D> build_contact(const SceneDescription<D>& description, const ShellElas
 // Repeats the search if something moved by more than half the skin (called by shell_substeps).
 template <int D>
 void update_contact_search(Contact<D>& contact, const ShellElasticity<D>& shells, std::span<const Vector<D>> position);
+
+// What the last evaluation found.
+template <int D>
+ContactReport contact_report(const Contact<D>& contact);
 
 // Adds contact forces, N (2-D: N/m), with the current normals of the shells.
 template <int D>

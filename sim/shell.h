@@ -112,6 +112,7 @@ struct ShellSubstepReport {
   std::int64_t substeps = 0, limiter_hits = 0;
   double substep = 0;          // s
   std::int64_t contacts = 0;   // rows in contact at the last sub-step
+  std::int64_t crossed = 0;    // of these, rows behind the other mid-surface
   double deepest_overlap = 0;  // m: largest contact distance minus gap
   double fastest = 0;          // m/s
 };
