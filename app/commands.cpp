@@ -1,0 +1,41 @@
+#include "app/commands.h"
+
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "app/scene_table.h"
+
+namespace app {
+
+int run_program(int argc, char** argv) {
+  CLI::App program("cusp: stress on an aortic valve, by the Moving Particle Semi-implicit method", "cusp");
+  program.set_version_flag("--version", CUSP_VERSION);
+  program.require_subcommand(1);
+  int exit_code = 0;
+  add_run_command(program, exit_code);
+  add_explain_command(program, exit_code);
+  add_info_command(program, exit_code);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
+    std::fprintf(stderr, "cusp: %s; `cusp --help` and `cusp COMMAND --help` say what can be typed\n", error.what());
+    return 2;
+  } catch (const SceneError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "cusp: not enough memory; make the spacing larger or set limits.particles\n");
+    return 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return exit_code;
+}
+
+}  // namespace app
