@@ -61,6 +61,7 @@ struct ShellElasticity {
   // rest neighbours, compressed rows
   std::vector<std::int32_t> start, neighbor;
   std::vector<double> fit;                                               // terms per pair: g (1/m), q (1/m2)
+  std::vector<double> fit_sum;                                           // per row: sum of its pairs' fits
   std::vector<double> residual_weight, residual_rest;                    // per pair: c w (N/m), normal residual at rest (m)
   std::vector<Padded<D>> monomial;                                       // 2-D: (xi, xi^2/2); 3-D: (X, Y, 0, 0) rest tangent coordinates, m
   std::vector<std::int32_t> reverse_start, reverse_pair, reverse_owner;  // pairs in which a row is the neighbour

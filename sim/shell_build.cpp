@@ -50,6 +50,30 @@ std::array<Vector<3>, 2> tangents_of(const Vector<3>& normal, const Vector<3>& a
 }
 
 template <int D>
+bool clamped(const ShellElasticity<D>& shells, std::int32_t i) {
+  return (shells.fixed[i] & ((1 << D) - 1)) == (1 << D) - 1;
+}
+
+// A clamp acts at the fixed region's face, half way between the last held and the first free row. The held row there stands for the stretch
+// between face and first free row (weight 16/3 makes its half bond twice as stiff); the bending of the first free cell is shared by the
+// hinges at the held row (4: the parabola of a rigid tangent) and at the free row (4/3): 1/4 + 3/4 = 1. Held rows behind take no part.
+template <int D>
+void weigh_clamps(ShellElasticity<D>& shells, const ShellBody& body, const PointGrid<D>& grid) {
+  for (std::int32_t i = body.first; i < body.first + body.count; ++i) {
+    const bool held = clamped(shells, i);
+    bool at_face = false;
+    grid.for_each_near(shells.rest_position[i], near_distance * body.spacing,
+                       [&](std::int32_t local, double) { at_face = at_face || clamped(shells, body.first + local) != held; });
+    if (held) {
+      shells.membrane_weight[i] = at_face ? 16.0 / 3 : 0.0;
+      shells.bending_weight[i] = at_face ? 1.0 : 0.0;
+    } else if (at_face) {
+      shells.bending_weight[i] = 4.0 / 3;
+    }
+  }
+}
+
+template <int D>
 struct Neighborhood {
   std::vector<std::int32_t> rows;
   std::vector<double> weight;
@@ -62,7 +86,8 @@ void gather(const ShellElasticity<D>& shells, const ShellBody& body, const Point
   std::vector<std::pair<std::int32_t, double>> found;
   grid.for_each_near(shells.rest_position[i], radius, [&](std::int32_t local, double squared) {
     const std::int32_t j = body.first + local;
-    if (j != i && shells.normal[j].dot(shells.normal[i]) > same_sheet) found.emplace_back(j, std::sqrt(squared));
+    const bool deep = shells.membrane_weight[j] == 0 && shells.membrane_weight[i] != 0;
+    if (j != i && !deep && shells.normal[j].dot(shells.normal[i]) > same_sheet) found.emplace_back(j, std::sqrt(squared));
   });
   std::sort(found.begin(), found.end());
   near.rows.clear();
@@ -123,11 +148,6 @@ void align_with_surface(ShellElasticity<D>& shells, const ShellBody& body, const
   }
 }
 
-template <int D>
-bool clamped(const ShellElasticity<D>& shells, std::int32_t i) {
-  return (shells.fixed[i] & ((1 << D) - 1)) == (1 << D) - 1;
-}
-
 // Pairs of one particle: g and q of the fit, the residual's weight. A clamped particle keeps its rest tangents: its curvature is that
 // of a parabola towards the free side, H = 2 (d . N) / distance^2 (one-term fit along nu, the direction of its free neighbours).
 template <int D>
@@ -174,6 +194,11 @@ void append_pairs(ShellElasticity<D>& shells, const ShellBody& body, std::int32_
     for (int a = 0; a < linear; ++a) coordinates[a] = m[a] * s;
     shells.monomial.push_back(coordinates);
   }
+  for (int t = 0; t < terms; ++t) {
+    double sum = 0;
+    for (std::size_t p = shells.start[i]; p < shells.neighbor.size(); ++p) sum += shells.fit[p * terms + t];
+    shells.fit_sum.push_back(sum);
+  }
   shells.start.push_back(static_cast<std::int32_t>(shells.neighbor.size()));
 }
 
@@ -191,28 +216,6 @@ void measure_rest_curvature(ShellElasticity<D>& shells, std::int32_t i) {
     const double height = (shells.rest_position[shells.neighbor[p]] - shells.rest_position[i]).dot(shells.normal[i]);
     const double x = shells.monomial[p][0], y = D == 3 ? shells.monomial[p][1] : 0.0;
     shells.residual_rest.push_back(height - 0.5 * h[0] * x * x - 0.5 * h[1] * y * y - h[2] * x * y);
-  }
-}
-
-// A clamp acts at the fixed region's face, half way between the last held and the first free row. The held row stands for the stretch
-// between face and first free row (weight 16/3 makes its half bond twice as stiff); the bending of the first free cell is shared by the
-// hinges at the held row (4: the parabola of a rigid tangent) and at the free row (4/3): 1/4 + 3/4 = 1.
-template <int D>
-void weigh_clamps(ShellElasticity<D>& shells, const ShellBody& body) {
-  for (std::int32_t i = body.first; i < body.first + body.count; ++i) {
-    const bool held = clamped(shells, i);
-    bool at_face = false;
-    for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p) {
-      const std::int32_t j = shells.neighbor[p];
-      const double distance = (shells.rest_position[j] - shells.rest_position[i]).norm();
-      at_face = at_face || (clamped(shells, j) != held && distance < near_distance * body.spacing);
-    }
-    if (held) {
-      shells.membrane_weight[i] = at_face ? 16.0 / 3 : 0.0;
-      shells.bending_weight[i] = at_face ? 1.0 : 0.0;
-    } else if (at_face) {
-      shells.bending_weight[i] = 4.0 / 3;
-    }
   }
 }
 
@@ -273,6 +276,7 @@ void append_body(ShellElasticity<D>& shells, const SceneDescription<D>& descript
   body.spacing = D == 3 ? std::sqrt(area / body.count) : area / body.count;
 
   const PointGrid<D> grid(std::span<const Vector<D>>(shells.rest_position).subspan(body.first), kernel_radius * body.spacing);
+  weigh_clamps(shells, body, grid);
   Neighborhood<D> near;
   for (std::int32_t i = body.first; i < body.first + body.count; ++i) {
     const Vector<D>& fibre = fibres[i - body.first];
@@ -283,7 +287,6 @@ void append_body(ShellElasticity<D>& shells, const SceneDescription<D>& descript
     append_pairs(shells, body, i, near);
     measure_rest_curvature(shells, i);
   }
-  weigh_clamps(shells, body);
   append_bonds(shells, body);
   shells.bodies.push_back(body);
 }

@@ -27,10 +27,8 @@ std::int64_t shell_forces(const ShellElasticity<D>& shells, std::span<const Vect
   {
 #pragma omp for schedule(static)
     for (std::int32_t i = 0; i < rows; ++i) {
-      const Kinematics<D> k = kinematics(shells, x.data(), i);
-      bool limited = energy_derivatives(shells, x.data(), i, k, derivative[i], pair_force.data());
-      own[i] = own_force(shells, derivative[i], pair_force.data(), i) + bond_force(shells, x.data(), v.data(), i, limited);
-      limited_rows += limited;
+      Padded<D> normal;
+      limited_rows += differentiate_row(shells, x.data(), v.data(), i, derivative[i], pair_force.data(), own[i], normal);
     }
 #pragma omp for schedule(static)
     for (std::int32_t j = 0; j < rows; ++j)
@@ -45,7 +43,7 @@ double shell_energy(const ShellElasticity<D>& shells, std::span<const Vector<D>>
   double total = 0;
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(shells.size()); ++i) {
     const bool held = is_clamped(shells, i);
-    if (held && shells.membrane_weight[i] == 0) continue;
+    if (idle(shells, i)) continue;
     const Kinematics<D> k = kinematics(shells, x.data(), i);
     const ShellBody& body = shells.bodies[shells.body[i]];
     const double volume = shells.area[i] * body.thickness * shells.stiffness_scale[i], z = body.thickness / (2 * std::sqrt(3.0));

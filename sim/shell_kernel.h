@@ -44,18 +44,9 @@ bool is_clamped(const ShellElasticity<D>& shells, std::int32_t i) {
   return (shells.fixed[i] & ((1 << D) - 1)) == (1 << D) - 1;
 }
 
-// a_a = sum g d, H = sum q d; C = a.a; kappa = n.H - kappa0 (a clamped particle's n is its rest normal).
+// Normal, metric and curvature from the fitted terms (a clamped particle's normal is its rest normal).
 template <int D>
-Kinematics<D> kinematics(const ShellElasticity<D>& shells, const Padded<D>* x, std::int32_t i) {
-  constexpr int count = terms<D>;
-  Kinematics<D> k;
-  for (auto& b : k.value) b.setZero();
-  const Padded<D> center = x[i];
-  const double* fit = &shells.fit[static_cast<std::size_t>(shells.start[i]) * count];
-  for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p, fit += count) {
-    const Padded<D> d = x[shells.neighbor[p]] - center;
-    for (int t = 0; t < count; ++t) k.value[t] += fit[t] * d;
-  }
+void complete(const ShellElasticity<D>& shells, std::int32_t i, Kinematics<D>& k) {
   const auto& b = k.value;
   const SheetTensor& rest = shells.rest_curvature[i];
   k.normal = normal_of(b, k.area_ratio);
@@ -67,6 +58,21 @@ Kinematics<D> kinematics(const ShellElasticity<D>& shells, const Padded<D>* x, s
     k.metric = {b[0].squaredNorm(), b[1].squaredNorm(), b[0].dot(b[1])};
     k.curvature = {k.normal.dot(b[2]) - rest.xx, k.normal.dot(b[3]) - rest.yy, k.normal.dot(b[4]) - rest.xy};
   }
+}
+
+// a_a = sum g d, H = sum q d; C = a.a; kappa = n.H - kappa0.
+template <int D>
+Kinematics<D> kinematics(const ShellElasticity<D>& shells, const Padded<D>* x, std::int32_t i) {
+  constexpr int count = terms<D>;
+  Kinematics<D> k;
+  for (auto& b : k.value) b.setZero();
+  const Padded<D> center = x[i];
+  const double* fit = &shells.fit[static_cast<std::size_t>(shells.start[i]) * count];
+  for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p, fit += count) {
+    const Padded<D> d = x[shells.neighbor[p]] - center;
+    for (int t = 0; t < count; ++t) k.value[t] += fit[t] * d;
+  }
+  complete(shells, i, k);
   return k;
 }
 
@@ -120,17 +126,17 @@ Padded<D> residual(const ShellElasticity<D>& shells, const Kinematics<D>& k, con
   }
 }
 
-// Derivatives of one particle's energy by its fitted terms (N m units such that force = sum derivative * fit), and per pair the residual's
-// force. Returns whether the law was limited.
+// The held rows behind a clamp's face store no energy.
 template <int D>
-bool energy_derivatives(const ShellElasticity<D>& shells, const Padded<D>* x, std::int32_t i, const Kinematics<D>& k,
-                        std::array<Padded<D>, terms<D>>& out, Padded<D>* pair_force) {
-  for (auto& t : out) t.setZero();
-  const bool held = is_clamped(shells, i);
-  if (held && shells.membrane_weight[i] == 0) {
-    for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p) pair_force[p].setZero();
-    return false;
-  }
+bool idle(const ShellElasticity<D>& shells, std::int32_t i) {
+  return shells.membrane_weight[i] == 0;
+}
+
+// Derivatives of one particle's energy by its fitted terms, N (a_a) and N m (H): force = sum derivative * fit. The residual's pull on the
+// normal comes in by `normal_pull`; the residual is added by `residual_forces`. Returns whether the law was limited.
+template <int D>
+bool energy_derivatives(const ShellElasticity<D>& shells, std::int32_t i, const Kinematics<D>& k, const Padded<D>& normal_pull,
+                        std::array<Padded<D>, terms<D>>& out) {
   const ShellBody& body = shells.bodies[shells.body[i]];
   const SheetMaterial& material = body.material;
   const double volume = shells.area[i] * body.thickness * shells.stiffness_scale[i];
@@ -143,33 +149,38 @@ bool energy_derivatives(const ShellElasticity<D>& shells, const Padded<D>* x, st
     n = n + sheet_stress(material, k.metric, shells.fibre[i]) * (volume * (shells.membrane_weight[i] - shells.bending_weight[i]));
   const SheetTensor m = (lower - upper) * (0.5 * z * volume * shells.bending_weight[i]);
   const auto& b = k.value;
-  Padded<D> y;  // derivative by the normal
+  Padded<D> y = normal_pull;  // derivative by the normal
   if constexpr (D == 2) {
     out[0] = n.xx * b[0];
     out[1] = m.xx * k.normal;
-    y = m.xx * b[1];
+    y += m.xx * b[1];
   } else {
     out[0] = n.xx * b[0] + n.xy * b[1];
     out[1] = n.xy * b[0] + n.yy * b[1];
     out[2] = m.xx * k.normal;
     out[3] = m.yy * k.normal;
     out[4] = 2 * m.xy * k.normal;
-    y = m.xx * b[2] + m.yy * b[3] + 2 * m.xy * b[4];
+    y += m.xx * b[2] + m.yy * b[3] + 2 * m.xy * b[4];
   }
-  if (held) {
-    for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p) pair_force[p].setZero();
-    return limited;
-  }
+  if (is_clamped(shells, i)) return limited;
   const double cell = volume * (D == 3 ? shells.area[i] : shells.area[i] * shells.area[i]) / 12;
   for (int direction = 0; direction < D - 1; ++direction)
     add_strain_gradient(k, direction, plane_stress_hooke(material, strain_gradient(k, direction)) * cell, out);
-  for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p) {
-    const Padded<D> r = residual(shells, k, Padded<D>(x[shells.neighbor[p]] - x[i]), p) * shells.residual_weight[p];
-    pair_force[p] = r;
-    y -= shells.residual_rest[p] * r;
-  }
   add_normal_change(k, y, out);
   return limited;
+}
+
+// Residual force of each pair of row i; returns its derivative by the normal.
+template <int D>
+Padded<D> residual_forces(const ShellElasticity<D>& shells, const Padded<D>* x, std::int32_t i, const Kinematics<D>& k,
+                          Padded<D>* pair_force) {
+  Padded<D> normal_pull = Padded<D>::Zero();
+  const Padded<D> center = x[i];
+  for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p) {
+    pair_force[p] = residual(shells, k, Padded<D>(x[shells.neighbor[p]] - center), p) * shells.residual_weight[p];
+    normal_pull -= shells.residual_rest[p] * pair_force[p];
+  }
+  return normal_pull;
 }
 
 // Elastic force on row j: minus what its pairs as a neighbour carry, plus what it owns.
@@ -193,15 +204,9 @@ Padded<D> gather_force(const ShellElasticity<D>& shells, const std::array<Padded
 template <int D>
 Padded<D> own_force(const ShellElasticity<D>& shells, const std::array<Padded<D>, terms<D>>& derivative, const Padded<D>* pair_force,
                     std::int32_t i) {
-  constexpr int count = terms<D>;
   Padded<D> force = Padded<D>::Zero();
-  std::array<double, count> sum{};
-  const double* fit = &shells.fit[static_cast<std::size_t>(shells.start[i]) * count];
-  for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p, fit += count) {
-    for (int a = 0; a < count; ++a) sum[a] += fit[a];
-    force += pair_force[p];
-  }
-  for (int a = 0; a < count; ++a) force += sum[a] * derivative[a];
+  for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p) force += pair_force[p];
+  for (int a = 0; a < terms<D>; ++a) force += shells.fit_sum[static_cast<std::size_t>(i) * terms<D> + a] * derivative[a];
   return force;
 }
 
@@ -225,6 +230,25 @@ Padded<D> bond_force(const ShellElasticity<D>& shells, const Padded<D>* x, const
     }
   }
   return force;
+}
+
+// Everything one row owns: derivatives, pair forces, the force on the row itself and its normal. Returns whether a limiter acted.
+template <int D>
+bool differentiate_row(const ShellElasticity<D>& shells, const Padded<D>* x, const Padded<D>* v, std::int32_t i,
+                       std::array<Padded<D>, terms<D>>& derivative, Padded<D>* pair_force, Padded<D>& own, Padded<D>& normal) {
+  bool limited = false;
+  const Kinematics<D> k = kinematics(shells, x, i);
+  normal = k.normal;
+  if (idle(shells, i)) {
+    for (auto& t : derivative) t.setZero();
+    for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p) pair_force[p].setZero();
+    own.setZero();
+    return false;
+  }
+  const Padded<D> pull = residual_forces(shells, x, i, k, pair_force);
+  limited = energy_derivatives(shells, i, k, pull, derivative);
+  own = own_force(shells, derivative, pair_force, i) + bond_force(shells, x, v, i, limited);
+  return limited;
 }
 
 }  // namespace sim::shell_kernel

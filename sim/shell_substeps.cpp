@@ -40,18 +40,8 @@ struct Workspace {
   }
 };
 
-// First half of a sub-step for one row: energy derivatives at the present positions.
-template <int D>
-void differentiate(const ShellElasticity<D>& shells, Workspace<D>& work, std::int32_t i) {
-  const Kinematics<D> k = kinematics(shells, work.x.data(), i);
-  bool limited = energy_derivatives(shells, work.x.data(), i, k, work.derivative[i], work.pair_force.data());
-  work.own[i] =
-      own_force(shells, work.derivative[i], work.pair_force.data(), i) + bond_force(shells, work.x.data(), work.v.data(), i, limited);
-  work.normal[i] = k.normal;
-  work.limited[i] |= limited;
-}
-
-// Second half: (m I + m_e N N^T) dV = [f_el + f_contact + F + m_e N (N . a^n) - m d V] dt; then the position with the new velocity.
+// One row's part of a sub-step: (m I + m_e N N^T) dV = [f_el + f_contact + F + m_e N (N . a^n) - m d V] dt; then the position with the new
+// velocity.
 template <int D>
 void advance(const ShellElasticity<D>& shells, const Contact<D>* contact, const ShellSubstepInput<D>& input, Workspace<D>& work,
              std::int32_t i, double dt) {
@@ -97,7 +87,9 @@ ShellSubstepReport shell_substeps(const ShellElasticity<D>& shells, Contact<D>* 
 #pragma omp parallel if (rows > 200)
     for (int step = 0; step < count; ++step) {
 #pragma omp for schedule(static)
-      for (std::int32_t i = 0; i < rows; ++i) differentiate(shells, work, i);
+      for (std::int32_t i = 0; i < rows; ++i)
+        work.limited[i] |= differentiate_row(shells, work.x.data(), work.v.data(), i, work.derivative[i], work.pair_force.data(),
+                                             work.own[i], work.normal[i]);
       if (contact_rows > 0) {
 #pragma omp for schedule(static)
         for (std::int32_t r = 0; r < contact_rows; ++r)
