@@ -231,7 +231,10 @@ void add_wall_surfaces(std::vector<ParticleSet>& sets, const std::vector<PlacedB
   std::vector<std::uint8_t> solid(cells.owner.size()), fluid(cells.owner.size());
   for (std::size_t c = 0; c < solid.size(); ++c) {
     const bool owned = cells.owner[c] != no_body;
-    solid[c] = cells.blocked[c] || (owned && bodies[cells.owner[c]].matter == Matter::wall);
+    const Vector3d center = cells.lattice.center(cells.lattice.cell(c));
+    const bool outside =
+        (center.array() < cells.lattice.bodies.min.array()).any() || (center.array() > cells.lattice.bodies.max.array()).any();
+    solid[c] = outside || cells.blocked[c] || (owned && bodies[cells.owner[c]].matter == Matter::wall);
     fluid[c] = owned && bodies[cells.owner[c]].matter == Matter::fluid;
   }
   const std::vector<std::uint8_t> reachable = reachable_cells(cells.lattice, solid, fluid);

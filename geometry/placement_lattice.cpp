@@ -146,7 +146,12 @@ PlacementLattice make_placement_lattice(const std::vector<PlacedBody>& bodies, c
   const double spacing = options.spacing;
   BoundingBox box;
   for (int m : members) box.include(bounding_box(bodies[m].shape, options.dimension));
+  lattice.bodies = box;
   lattice.edge[2] = {-0.5, 0.5};
+  // Curved surfaces are relaxed against particles of the space outside: room for them.
+  const bool straight =
+      std::all_of(members.begin(), members.end(), [&](int m) { return is_rectilinear(bodies[m].shape, options.dimension); });
+  const double room = straight ? 0 : 7 * spacing;
   for (int axis = 0; axis < options.dimension; ++axis) {
     std::vector<double> planes;
     const auto accept = [&](double plane, double own_partner) {
@@ -176,7 +181,8 @@ PlacementLattice make_placement_lattice(const std::vector<PlacedBody>& bodies, c
       planes.push_back(0.5 * (first.min[axis] + first.max[axis]));
     }
     const bool wraps = options.periodic[axis];
-    lattice.edge[axis] = cell_edges(planes, wraps ? planes.front() : box.min[axis], wraps ? planes.back() : box.max[axis], spacing);
+    lattice.edge[axis] =
+        cell_edges(planes, wraps ? planes.front() : box.min[axis] - room, wraps ? planes.back() : box.max[axis] + room, spacing);
   }
   return lattice;
 }

@@ -15,6 +15,7 @@ struct PlacementLattice {
   int dimension = 3;
   std::array<std::vector<double>, 3> edge;  // cell boundaries along each axis, increasing, m
   PeriodicBox periodic;
+  BoundingBox bodies;  // of the bodies it was made for; cells may reach beyond
   int count(int axis) const { return int(edge[axis].size()) - 1; }
   std::size_t size() const { return std::size_t(count(0)) * count(1) * count(2); }
   std::size_t index(int i, int j, int k) const { return i + std::size_t(count(0)) * (j + std::size_t(count(1)) * k); }
