@@ -72,6 +72,11 @@ struct InitialParticles {
   std::vector<std::uint8_t> fixed;         // bit k set: displacement along axis k is held at 0
   std::vector<double> stiffness_scale;     // elastic, shell: factor on the body's stiffness (calcified spots); else 1
   std::vector<Vector<D>> fibre;            // elastic, shell with fibre_reinforced: unit fibre direction, else 0
+  // Optional (empty = half-way between fixed and free particles): for elastic particles outside a fixed region but within 1 l0 of its face,
+  // the vector to the nearest point of that face, m, and the axes held there (bits as in `fixed`; 0 = no face near). The region may also
+  // merely touch the body from outside. The clamp then acts at the face exactly, wherever it cuts the lattice.
+  std::vector<Vector<D>> clamp_offset;
+  std::vector<std::uint8_t> clamp_axes;
   std::size_t size() const { return position.size(); }
 };
 

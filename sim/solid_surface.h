@@ -1,0 +1,38 @@
+// Where the surface that an elastic particle carries lies, and forces that act there.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "sim/solid.h"
+
+namespace sim {
+
+// A piece of the body's surface at a fixed offset from its particle.
+template <int D>
+struct SurfacePiece {
+  Vector<D> offset;  // m, from the particle's centre, at rest
+  Vector<D> area;    // m^2 (2-D: m), outward
+};
+template <int D>
+struct SurfacePieces {
+  std::array<SurfacePiece<D>, D> piece;
+  int count = 0;
+  const SurfacePiece<D>* begin() const { return piece.data(); }
+  const SurfacePiece<D>* end() const { return piece.data() + count; }
+};
+
+// A cell of a lattice has a piece for each of its open faces (a corner has D); any other particle one piece, `depth` away along the normal.
+template <int D>
+SurfacePieces<D> surface_pieces(const SolidElasticity<D>& solid, std::size_t row);
+
+// Weight of a link's displacement difference in the fitted displacement at an offset: u(offset) = u_i + sum_l weight_l (u_l - u_i).
+template <int D>
+double extrapolation_weight(const SolidElasticity<D>& solid, std::int64_t link, const Vector<D>& offset);
+
+// Adds a force that acts at an offset from particle `row`: the work is that of the fitted displacement there.
+template <int D>
+void add_force_at(const SolidElasticity<D>& solid, std::size_t row, const Vector<D>& offset, const Vector<D>& f,
+                  std::span<Vector<D>> force);
+
+}  // namespace sim
