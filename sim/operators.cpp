@@ -1,0 +1,101 @@
+#include "sim/operators.h"
+
+#include <Eigen/Dense>
+
+namespace sim {
+using Index = std::ptrdiff_t;
+
+template <int D>
+Tensor<D> floored_inverse(const Tensor<D>& moment, double floor) {
+  // Most particles are well surrounded: the plain inverse serves when even the crudest bound on the smallest eigenvalue is met.
+  double bound = moment(0, 0) - moment.row(0).cwiseAbs().sum() + std::abs(moment(0, 0));
+  for (int a = 1; a < D; ++a) bound = std::min(bound, moment(a, a) + std::abs(moment(a, a)) - moment.row(a).cwiseAbs().sum());
+  if (bound > floor) return moment.inverse();
+  Eigen::SelfAdjointEigenSolver<Tensor<D>> solver;
+  solver.computeDirect(moment);
+  const Vector<D> values = solver.eigenvalues().cwiseMax(floor).cwiseInverse();
+  return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+template <int D>
+void moment_matrices(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  const Index n = static_cast<Index>(state.size());
+  work.velocity_inverse.resize(n);
+  work.pressure_inverse.resize(n);
+  const double factor = scene.lattice.gradient_factor();
+  const double least = scene.lattice.closest() * scene.lattice.closest();
+#pragma omp parallel for schedule(dynamic, 256)
+  for (Index i = scene.first_fluid; i < n; ++i) {
+    Tensor<D> fluid = Tensor<D>::Zero(), boundary = Tensor<D>::Zero();
+    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+      const double w = work.link_weight[k];
+      if (w == 0) continue;
+      const std::int32_t j = work.neighbors.index[k];
+      const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
+      const double c = factor * w / std::max(r.squaredNorm(), least);
+      if (j >= scene.first_fluid) {
+        const Tensor<D> share = c * r * r.transpose();
+        if (state.kind[j] == Kind::fluid) {
+          fluid += share;
+        } else {
+          boundary += share;
+          const Port<D>& port = scene.description.ports[state.port[j]];
+          if (gives_pressure(port)) {
+            fluid += share;
+            boundary -= share;
+          }
+        }
+      } else {
+        boundary.noalias() += c * r * r.transpose();
+      }
+    }
+    const bool isolated = work.number_density[i] < 0.6;
+    work.velocity_inverse[i] = isolated ? Tensor<D>::Identity().eval() : floored_inverse<D>(fluid + boundary, 0.3);
+    if (work.surface[i] == 1) {  // the surface, half a spacing ahead, is a sample of the pressure (see pressure_gradients)
+      const double ahead = work.surface_outward[i].norm();
+      const double missing = scene.lattice.number_density * std::max(1 - work.number_density[i], 0.0);
+      if (ahead > 0) fluid += 0.25 * factor * missing / (ahead * ahead) * work.surface_outward[i] * work.surface_outward[i].transpose();
+    }
+    work.pressure_inverse[i] = isolated ? Tensor<D>::Identity().eval() : floored_inverse<D>(fluid, 0.3);
+  }
+}
+
+template <int D>
+void velocity_gradients(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  const Index n = static_cast<Index>(state.size());
+  work.velocity_gradient.resize(n);
+  const double factor = scene.lattice.gradient_factor();
+  const double least = scene.lattice.closest() * scene.lattice.closest();
+  const bool slip = !scene.viscosity.has_value();
+#pragma omp parallel for schedule(dynamic, 256)
+  for (Index i = scene.first_fluid; i < n; ++i) {
+    Tensor<D> sum = Tensor<D>::Zero();
+    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+      const double w = work.link_weight[k];
+      if (w == 0) continue;
+      const std::int32_t j = work.neighbors.index[k];
+      const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
+      const double c = factor * w / std::max(r.squaredNorm(), least);
+      if (j >= scene.first_fluid) {
+        sum.noalias() += c * (state.velocity[j] - state.velocity[i]) * r.transpose();
+      } else {
+        const Vector<D>& normal = work.boundary_normal[j];
+        const double t = fluid_fraction<D>(r, normal, scene.description.particles.depth[j]);
+        Vector<D> jump = work.boundary_velocity[j] - state.velocity[i];
+        if (slip) jump = jump.dot(normal) * normal;
+        sum.noalias() += c / t * jump * r.transpose();
+      }
+    }
+    work.velocity_gradient[i] = sum * work.velocity_inverse[i];
+  }
+}
+
+#define INSTANTIATE(D)                                                            \
+  template Tensor<D> floored_inverse<D>(const Tensor<D>&, double);                \
+  template void moment_matrices(const Scene<D>&, const State<D>&, Workspace<D>&); \
+  template void velocity_gradients(const Scene<D>&, const State<D>&, Workspace<D>&);
+INSTANTIATE(2)
+INSTANTIATE(3)
+#undef INSTANTIATE
+
+}  // namespace sim

@@ -1,0 +1,50 @@
+// Corrected MPS gradients over irregular particles (paper Eqs 16, 17 with the moment matrix of numerics-fluid 4(ii)3-4).
+#pragma once
+
+#include <algorithm>
+
+#include "sim/scene.h"
+#include "sim/workspace.h"
+
+namespace sim {
+
+// The part of the way from a fluid particle to a boundary particle that lies in the fluid: 1 for a shell (its particles lie on the
+// surface), d_f / (d_f + d_b) for a wall or solid of which the particle lies d_b below the true surface. r: from fluid to boundary
+// particle; normal: unit, into the fluid. Never below 0.2, so that a fluid particle on the surface keeps a finite sample.
+template <int D>
+double fluid_fraction(const Vector<D>& r, const Vector<D>& normal, double depth) {
+  if (depth <= 0) return 1;
+  const double across = std::max(-r.dot(normal), 1e-12);
+  return std::clamp(1.0 - depth / across, 0.2, 1.0);
+}
+
+// Whether the port gives its pressure (else its speed).
+template <int D>
+bool gives_pressure(const Port<D>& port) {
+  return port.condition == PortCondition::pressure || port.condition == PortCondition::windkessel;
+}
+
+// The part of the way from blood at x_i to a port particle at x_j that lies inside the port's plane, where its pressure holds; in [0.2, 1].
+template <int D>
+double port_fraction(const Port<D>& port, const Vector<D>& x_i, const Vector<D>& x_j) {
+  const double inside = -(x_i - port.point).dot(port.normal), outside = (x_j - port.point).dot(port.normal);
+  if (outside <= 0) return 1;
+  return std::clamp(inside / (inside + outside), 0.2, 1.0);
+}
+
+// Inverse moment matrices of every fluid particle: M = d/n0 sum w r r^T / |r|². One over fluid and boundary (for velocities: the boundary
+// particle carries the value that makes the velocity at its true surface the surface's own), one over fluid alone (for pressure, so that a
+// linear pressure has its exact gradient beside a wall too). The identity where n < 0.6 n0; eigenvalues below `floor` are lifted to it.
+template <int D>
+void moment_matrices(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
+
+// grad v at every fluid particle from the current velocities; on the boundary v is the surface's own (no slip), or, for inviscid fluid,
+// only its normal part. The trace is the divergence of Eq (17), exact for linear fields.
+template <int D>
+void velocity_gradients(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
+
+// Eigenvalues of a symmetric matrix lifted to at least `floor`, then inverted.
+template <int D>
+Tensor<D> floored_inverse(const Tensor<D>& moment, double floor);
+
+}  // namespace sim

@@ -1,0 +1,213 @@
+#include "sim/ports.h"
+
+#include <cmath>
+
+namespace sim {
+namespace {
+
+constexpr double layers = 3;  // port particles reach this many l0 out of the plane
+
+// Height outside the port's plane (m, positive outside), or a large number where x lies beside the opening.
+template <int D>
+double height_outside(const Scene<D>& scene, const Port<D>& port, const Vector<D>& x) {
+  const Vector<D> r = x - port.point;
+  const double height = r.dot(port.normal);
+  const double aside = (r - height * port.normal).norm();
+  return aside <= port.radius + 0.5 * scene.description.spacing ? height : 1e300;
+}
+
+// Cross-section of the opening, m² (2-D: m): port particles a layer times l0^(D-1).
+template <int D>
+double opening_area(const Scene<D>& scene, const State<D>& state, std::int32_t port) {
+  double count = 0;
+  for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i) count += state.port[i] == port;
+  return count / layers * std::pow(scene.description.spacing, D - 1);
+}
+
+// Mean inward speed of the blood within two spacings of the plane, m/s.
+template <int D>
+double speed_inside(const Scene<D>& scene, const State<D>& state, const Port<D>& port) {
+  double sum = 0, count = 0;
+  for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i) {
+    if (state.kind[i] != Kind::fluid) continue;
+    const double height = height_outside(scene, port, state.position[i]);
+    if (height > 0 || height < -2 * scene.description.spacing) continue;
+    sum -= state.velocity[i].dot(port.normal);
+    count += 1;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+template <int D>
+void append_port_particle(State<D>& state, std::int32_t port, std::int32_t body, const Vector<D>& position, const Vector<D>& velocity,
+                          double pressure) {
+  state.id.push_back(state.next_id++);
+  state.kind.push_back(Kind::port);
+  state.body.push_back(body);
+  state.port.push_back(port);
+  state.position.push_back(position);
+  state.velocity.push_back(velocity);
+  state.pressure.push_back(pressure);
+}
+
+// Keeps the rows for which keep[row - first] is set, in order.
+template <int D>
+void keep_rows(State<D>& state, std::size_t first, const std::vector<std::uint8_t>& keep) {
+  std::size_t to = first;
+  for (std::size_t i = first; i < state.size(); ++i) {
+    if (!keep[i - first]) continue;
+    if (to != i) {
+      state.id[to] = state.id[i];
+      state.kind[to] = state.kind[i];
+      state.body[to] = state.body[i];
+      state.port[to] = state.port[i];
+      state.position[to] = state.position[i];
+      state.velocity[to] = state.velocity[i];
+      state.pressure[to] = state.pressure[i];
+    }
+    ++to;
+  }
+  state.id.resize(to), state.kind.resize(to), state.body.resize(to), state.port.resize(to);
+  state.position.resize(to), state.velocity.resize(to), state.pressure.resize(to);
+}
+
+}  // namespace
+
+template <int D>
+void open_ports(const Scene<D>& scene, State<D>& state) {
+  const auto& ports = scene.description.ports;
+  state.port_memory.assign(ports.size(), 0);
+  state.port_flow.assign(ports.size(), 0);
+  state.port_volume.assign(ports.size(), 0);
+  const std::size_t fluid_end = state.size();
+  for (std::size_t p = 0; p < ports.size(); ++p) {
+    const Port<D>& port = ports[p];
+    state.port_memory[p] = port.windkessel.initial_pressure;
+    for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < fluid_end; ++i) {
+      const double height = height_outside(scene, port, state.position[i]);
+      if (height > 0 || height < -layers * scene.description.spacing) continue;
+      append_port_particle<D>(state, static_cast<std::int32_t>(p), state.body[i], state.position[i] - 2 * height * port.normal,
+                              -port.start_speed * port.normal, 0);
+    }
+  }
+  prescribe_ports(scene, state, 0);
+}
+
+template <int D>
+void prescribe_ports(const Scene<D>& scene, State<D>& state, double time) {
+  for (std::size_t p = 0; p < scene.description.ports.size(); ++p) {
+    const Port<D>& port = scene.description.ports[p];
+    double speed = 0, pressure = 0;
+    switch (port.condition) {
+      case PortCondition::velocity:
+        speed = port.table.at(time);
+        break;
+      case PortCondition::flow_rate: {
+        const double area = opening_area(scene, state, static_cast<std::int32_t>(p));
+        speed = area > 0 ? port.table.at(time) / area : 0;
+        break;
+      }
+      case PortCondition::pressure:
+        speed = speed_inside(scene, state, port);
+        pressure = port.table.at(time) - port.impedance * speed;
+        break;
+      case PortCondition::windkessel:
+        speed = speed_inside(scene, state, port);
+        pressure = state.port_memory[p] - port.windkessel.proximal_resistance * state.port_flow[p];
+        break;
+    }
+    for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i)
+      if (state.port[i] == static_cast<std::int32_t>(p)) {
+        state.velocity[i] = -speed * port.normal;
+        state.pressure[i] = pressure;
+      }
+  }
+}
+
+template <int D>
+void exchange_through_ports(const Scene<D>& scene, State<D>& state, double dt) {
+  const auto& ports = scene.description.ports;
+  const std::size_t first = static_cast<std::size_t>(scene.first_fluid), before = state.size();
+  const double l0 = scene.description.spacing;
+  std::vector<std::uint8_t> keep(before - first, 1);
+  for (std::size_t p = 0; p < ports.size(); ++p) {
+    const Port<D>& port = ports[p];
+    const double area = opening_area(scene, state, static_cast<std::int32_t>(p));
+    double speed = 0, sheet_pressure = 0;
+    bool any = false;
+    std::vector<std::size_t> sheet;
+    for (std::size_t i = first; i < before; ++i)
+      if (state.port[i] == static_cast<std::int32_t>(p)) sheet.push_back(i);
+    for (std::size_t i : sheet) {
+      speed = -state.velocity[i].dot(port.normal);
+      sheet_pressure = state.pressure[i];
+      any = true;
+    }
+    if (any) {
+      const double flow = speed * area;
+      state.port_flow[p] = flow;
+      state.port_volume[p] += flow * dt;
+      state.ledger.port_work += sheet_pressure * flow * dt;
+      if (port.condition == PortCondition::windkessel) {
+        const Windkessel& w = port.windkessel;  // C dP/dt = -q - P/R_d with q the flow into the blood
+        state.port_memory[p] += dt * (-flow - state.port_memory[p] / w.distal_resistance) / w.compliance;
+      }
+    }
+    for (std::size_t i : sheet) {
+      const double height = (state.position[i] - port.point).dot(port.normal);
+      if (height > layers * l0) {
+        keep[i - first] = 0;
+      } else if (height < 0) {
+        state.kind[i] = Kind::fluid;
+        state.port[i] = -1;
+        ++state.ledger.particles_in;
+        const Vector<D> spot = state.position[i] + layers * l0 * port.normal;
+        bool free = true;
+        for (std::size_t j : sheet) free = free && (keep[j - first] == 0 || (state.position[j] - spot).squaredNorm() > 0.36 * l0 * l0);
+        if (free) append_port_particle<D>(state, static_cast<std::int32_t>(p), state.body[i], spot, state.velocity[i], state.pressure[i]);
+      }
+    }
+    for (std::size_t i = first; i < before; ++i) {
+      if (state.kind[i] != Kind::fluid) continue;
+      const double height = height_outside(scene, port, state.position[i]);
+      if (height <= 0 || height > layers * l0) continue;
+      state.kind[i] = Kind::port;
+      state.port[i] = static_cast<std::int32_t>(p);
+      ++state.ledger.particles_out;
+    }
+  }
+  keep.resize(state.size() - first, 1);
+  keep_rows(state, first, keep);
+}
+
+template <int D>
+void remove_escaped(const Scene<D>& scene, State<D>& state) {
+  const std::size_t first = static_cast<std::size_t>(scene.first_fluid);
+  std::vector<std::uint8_t> keep(state.size() - first, 1);
+  const Domain<D>& domain = scene.description.domain;
+  bool any = false;
+  for (std::size_t i = first; i < state.size(); ++i) {
+    bool inside = true;
+    for (int k = 0; k < D; ++k) {
+      const double x = state.position[i][k];
+      if (domain.present && !domain.periodic[k]) inside = inside && x >= domain.min[k] && x <= domain.max[k];
+      inside = inside && x >= scene.lower[k] && x <= scene.upper[k];
+    }
+    if (inside || state.kind[i] == Kind::port) continue;
+    keep[i - first] = 0;
+    any = true;
+    ++state.ledger.particles_out;
+  }
+  if (any) keep_rows(state, first, keep);
+}
+
+#define INSTANTIATE(D)                                                      \
+  template void open_ports(const Scene<D>&, State<D>&);                     \
+  template void prescribe_ports(const Scene<D>&, State<D>&, double);        \
+  template void exchange_through_ports(const Scene<D>&, State<D>&, double); \
+  template void remove_escaped(const Scene<D>&, State<D>&);
+INSTANTIATE(2)
+INSTANTIATE(3)
+#undef INSTANTIATE
+
+}  // namespace sim

@@ -1,0 +1,231 @@
+#include "sim/pressure.h"
+
+#include <numeric>
+
+#include "sim/operators.h"
+#include "sim/parallel.h"
+
+namespace sim {
+using Index = std::ptrdiff_t;
+
+template <int D>
+void number_unknowns(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  const Index n = static_cast<Index>(state.size());
+  work.unknown.assign(n, -1);
+  work.unknown_row.clear();
+  for (Index i = scene.first_fluid; i < n; ++i) {
+    if (state.kind[i] != Kind::fluid || work.number_density[i] < 0.02) continue;
+    work.unknown[i] = static_cast<std::int32_t>(work.unknown_row.size());
+    work.unknown_row.push_back(static_cast<std::int32_t>(i));
+  }
+}
+
+namespace {
+
+// D_i(a) without the shells' part (see pressure.h); k already in w.
+template <int D>
+double acceleration_link(const Scene<D>& scene, const Workspace<D>& work, Index i, std::int32_t j, const Vector<D>& r, bool at_surface) {
+  const Vector<D>& a_i = work.acceleration[i];
+  const Vector<D>& a_j = work.acceleration[j];
+  if (j >= scene.first_fluid) return 0.5 * r.dot(at_surface ? Vector<D>(a_j - a_i) : Vector<D>(a_j + a_i));
+  if (!at_surface) return r.dot(a_j);
+  const Vector<D>& normal = work.boundary_normal[j];
+  return (a_j - a_i).dot(normal) * r.dot(normal);
+}
+
+}  // namespace
+
+template <int D>
+void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt) {
+  const Index unknowns = static_cast<Index>(work.unknown_row.size());
+  const double k = scene.lattice.laplacian_factor(), n0 = scene.lattice.number_density, volume = scene.fluid_particle_volume;
+  const double blend = scene.description.scheme.density_blend;
+  SymmetricMatrix& a = work.matrix;
+  a.diagonal.assign(unknowns, 0);
+  a.start.assign(unknowns + 1, 0);
+  work.source.assign(unknowns, 0);
+#pragma omp parallel for schedule(dynamic, 512)
+  for (Index u = 0; u < unknowns; ++u) {
+    const Index i = work.unknown_row[u];
+    std::int64_t links = 0;
+    for (std::int64_t e = work.neighbors.start[i]; e < work.neighbors.start[i + 1]; ++e)
+      links += work.link_weight[e] != 0 && work.unknown[work.neighbors.index[e]] >= 0;
+    a.start[u + 1] = links;
+  }
+  std::partial_sum(a.start.begin(), a.start.end(), a.start.begin());
+  a.column.resize(a.start[unknowns]);
+  a.value.resize(a.start[unknowns]);
+#pragma omp parallel for schedule(dynamic, 256)
+  for (Index u = 0; u < unknowns; ++u) {
+    const Index i = work.unknown_row[u];
+    const double rho = scene.density[state.body[i]];
+    const bool at_surface = work.surface[i] == 1;
+    std::int64_t entry = a.start[u];
+    double diagonal = 0, divergence = 0, source = 0;
+    bool beside_port = false;
+    for (std::int64_t e = work.neighbors.start[i]; e < work.neighbors.start[i + 1]; ++e) {
+      const double w = work.link_weight[e];
+      if (w == 0) continue;
+      const std::int32_t j = work.neighbors.index[e];
+      if (j < scene.first_fluid && state.kind[j] == Kind::shell) continue;  // leaflet_coupling.cpp
+      const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
+      if (j >= scene.first_fluid && state.kind[j] == Kind::port) beside_port = true;
+      const bool port = j >= scene.first_fluid && state.kind[j] == Kind::port;
+      if (port && !gives_pressure(scene.description.ports[state.port[j]])) continue;  // its speed at the new time is in grad v
+      divergence += k * w * acceleration_link<D>(scene, work, i, j, r, at_surface);
+      if (j < scene.first_fluid) continue;
+      double c = volume * k * w * 2 / (rho + scene.density[state.body[j]]);
+      if (port) c /= port_fraction<D>(scene.description.ports[state.port[j]], state.position[i], state.position[j]);
+      diagonal += c;
+      if (work.unknown[j] >= 0) {
+        a.column[entry] = work.unknown[j];
+        a.value[entry++] = -c;
+      } else if (port) {
+        source += c * state.pressure[j];
+      } else {
+        diagonal -= c;  // an isolated drop takes no part
+      }
+    }
+    const double n = work.number_density[i];
+    double compression = std::clamp(n - 1, -0.2, 0.2);
+    if (work.surface[i] != 0) compression = std::max(compression, 0.0);  // beside a surface neighbours are missing by right
+    if (beside_port) compression = 0;
+    if (at_surface)  // the surface, where p = 0, lies half a spacing ahead; at least the missing neighbours count
+      diagonal += volume * k / rho * std::max(work.surface_outward[i].norm() / (0.5 * scene.lattice.spacing), n0 * std::max(1 - n, 0.0));
+    source += volume * (-work.velocity_gradient[i].trace() / dt - divergence + blend * compression / (dt * dt));
+    a.diagonal[u] = diagonal > 0 ? diagonal : 1;
+    work.source[u] = diagonal > 0 ? source : 0;
+  }
+}
+
+namespace {
+
+// Labels of the connected regions of the matrix' graph.
+std::vector<std::int32_t> connected_regions(const SymmetricMatrix& a, std::int32_t& count) {
+  std::vector<std::int32_t> label(a.rows(), -1), stack;
+  count = 0;
+  for (std::size_t s = 0; s < a.rows(); ++s) {
+    if (label[s] >= 0) continue;
+    label[s] = count;
+    stack.push_back(static_cast<std::int32_t>(s));
+    while (!stack.empty()) {
+      const std::int32_t u = stack.back();
+      stack.pop_back();
+      for (std::int64_t e = a.start[u]; e < a.start[u + 1]; ++e)
+        if (label[a.column[e]] < 0) {
+          label[a.column[e]] = count;
+          stack.push_back(a.column[e]);
+        }
+    }
+    ++count;
+  }
+  return label;
+}
+
+void remove_means(std::vector<double>& x, const std::vector<std::int32_t>& label, std::int32_t count) {
+  std::vector<double> sum(count, 0), size(count, 0);
+  for (std::size_t u = 0; u < x.size(); ++u) sum[label[u]] += x[u], size[label[u]] += 1;
+  for (std::size_t u = 0; u < x.size(); ++u) x[u] -= sum[label[u]] / size[label[u]];
+}
+
+}  // namespace
+
+template <int D>
+SolveReport solve_pressure(const Scene<D>& scene, State<D>& state, Workspace<D>& work) {
+  const Index unknowns = static_cast<Index>(work.unknown_row.size());
+  work.solution.resize(unknowns);
+  for (Index u = 0; u < unknowns; ++u) work.solution[u] = state.pressure[work.unknown_row[u]];
+  std::vector<std::int32_t> label;
+  std::int32_t regions = 0;
+  if (!scene.pressure->anchored) {
+    label = connected_regions(work.matrix, regions);
+    remove_means(work.source, label, regions);
+  }
+  Multigrid* multigrid = nullptr;
+  if (unknowns > 400) {
+    work.multigrid = build_multigrid(work.matrix);
+    multigrid = &work.multigrid;
+  }
+  const SchemeSettings& scheme = scene.description.scheme;
+  const SolveReport report = conjugate_gradient(work.matrix, work.source, work.solution, scheme.pressure_tolerance,
+                                                scheme.pressure_iterations, multigrid, work.scratch);
+  if (!scene.pressure->anchored) remove_means(work.solution, label, regions);
+  for (Index i = scene.first_fluid; i < static_cast<Index>(state.size()); ++i)
+    if (state.kind[i] == Kind::fluid) {
+      const double p = work.unknown[i] >= 0 ? work.solution[work.unknown[i]] : 0.0;
+      state.pressure[i] = scene.pressure->free_surface ? std::max(p, 0.0) : p;
+    }
+  return report;
+}
+
+template <int D>
+void pressure_gradients(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  const Index n = static_cast<Index>(state.size());
+  work.pressure_gradient.resize(n);
+  const double factor = scene.lattice.gradient_factor();
+  const double least = scene.lattice.closest() * scene.lattice.closest();
+#pragma omp parallel for schedule(dynamic, 256)
+  for (Index i = scene.first_fluid; i < n; ++i) {
+    work.pressure_gradient[i].setZero();
+    if (state.kind[i] != Kind::fluid) continue;
+    const bool inside = work.surface[i] != 1 || work.number_density[i] >= 0.6;
+    const double p_i = state.pressure[i], rho = scene.density[state.body[i]];
+    Vector<D> sum = Vector<D>::Zero();
+    for (std::int64_t e = work.neighbors.start[i]; e < work.neighbors.start[i + 1]; ++e) {
+      const double w = work.link_weight[e];
+      if (w == 0) continue;
+      const std::int32_t j = work.neighbors.index[e];
+      const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
+      const double c = factor * w / std::max(r.squaredNorm(), least);
+      if (j >= scene.first_fluid) {
+        double t = 1;
+        if (state.kind[j] == Kind::port) {
+          const Port<D>& port = scene.description.ports[state.port[j]];
+          if (inside && !gives_pressure(port)) continue;
+          if (inside) t = port_fraction<D>(port, state.position[i], state.position[j]);
+        }
+        sum += c / t * (inside ? state.pressure[j] - p_i : state.pressure[j] + p_i) * r;
+      } else if (!inside) {
+        const Vector<D>& normal = work.boundary_normal[j];
+        sum += c * (2 * p_i + rho * (work.acceleration[i] - work.acceleration[j]).dot(normal) * r.dot(normal)) * r;
+      }
+    }
+    const double ahead = work.surface_outward[i].norm();
+    if (inside && ahead > 0) {  // the surface itself: p = 0 half a spacing ahead, with the weight of what is missing there
+      const double missing = scene.lattice.number_density * std::max(1 - work.number_density[i], 0.0);
+      const double distance = 0.5 * scene.lattice.spacing;
+      sum -= factor * missing * distance / (scene.lattice.spacing * scene.lattice.spacing) / ahead * p_i * work.surface_outward[i];
+    }
+    work.pressure_gradient[i] = inside ? Vector<D>(work.pressure_inverse[i] * sum) : sum;
+  }
+}
+
+template <int D>
+void boundary_pressures(const Scene<D>& scene, State<D>& state, const Workspace<D>& work) {
+#pragma omp parallel for schedule(dynamic, 256)
+  for (Index b = 0; b < static_cast<Index>(scene.first_fluid); ++b) {
+    if (state.kind[b] == Kind::shell) continue;
+    double sum = 0, weights = 0;
+    for (std::int64_t e = work.neighbors.start[b]; e < work.neighbors.start[b + 1]; ++e) {
+      const std::int32_t i = work.neighbors.index[e];
+      const double w = work.link_weight[e];
+      if (w == 0 || state.kind[i] != Kind::fluid) continue;
+      const Vector<D> r = scene.space.difference(state.position[i], state.position[b]);
+      sum += w * (state.pressure[i] + scene.density[state.body[i]] * r.dot(work.acceleration[i]));
+      weights += w;
+    }
+    state.pressure[b] = weights > 0 ? sum / weights : 0;
+  }
+}
+
+#define INSTANTIATE(D)                                                                     \
+  template void number_unknowns(const Scene<D>&, const State<D>&, Workspace<D>&);          \
+  template void pressure_poisson(const Scene<D>&, const State<D>&, Workspace<D>&, double); \
+  template SolveReport solve_pressure(const Scene<D>&, State<D>&, Workspace<D>&);          \
+  template void pressure_gradients(const Scene<D>&, const State<D>&, Workspace<D>&);       \
+  template void boundary_pressures(const Scene<D>&, State<D>&, const Workspace<D>&);
+INSTANTIATE(2)
+INSTANTIATE(3)
+#undef INSTANTIATE
+
+}  // namespace sim

@@ -1,0 +1,128 @@
+#include "sim/shifting.h"
+
+#include <cmath>
+
+namespace sim {
+using Index = std::ptrdiff_t;
+
+template <int D>
+void shifting_displacement(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt) {
+  const Index n = static_cast<Index>(state.size());
+  work.displacement.assign(n, Vector<D>::Zero());
+  const double l0 = scene.lattice.spacing, strongest = scene.description.scheme.shifting;
+  if (!(strongest > 0)) return;
+  const double factor = l0 * l0 * scene.lattice.gradient_factor();
+  const double at_l0 = weight(l0, scene.lattice.radius, scene.lattice.closest());
+#pragma omp parallel for schedule(dynamic, 256)
+  for (Index i = scene.first_fluid; i < n; ++i) {
+    if (state.kind[i] != Kind::fluid || work.surface[i] == 1) continue;
+    Vector<D> sum = Vector<D>::Zero(), outward = Vector<D>::Zero();
+    double fastest = state.velocity[i].squaredNorm();
+    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+      const std::int32_t j = work.neighbors.index[k];
+      const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
+      const double distance = std::max(r.norm(), scene.lattice.closest());
+      const double w = weight(distance, scene.lattice.radius, scene.lattice.closest()) * (j < scene.first_fluid ? scene.measure[j] : 1.0);
+      const double q = w / at_l0, q2 = q * q;
+      sum += w / (distance * distance) * (1 + 0.2 * q2 * q2) * r;
+      if (j >= scene.first_fluid) fastest = std::max(fastest, state.velocity[j].squaredNorm());
+      if (work.surface[j] == 1) outward += w * r;
+    }
+    const double strength = std::min(strongest, 0.02 + 3 * std::sqrt(fastest) * dt / l0);
+    Vector<D> shift = -factor * strength * sum;
+    if (work.surface[i] == 2 && outward.squaredNorm() > 0) {
+      outward.normalize();
+      shift -= shift.dot(outward) * outward;
+    }
+    const double length = shift.norm();
+    if (length > 0.1 * l0) shift *= 0.1 * l0 / length;
+    work.displacement[i] = shift;
+  }
+}
+
+template <int D>
+void shift_particles(const Scene<D>& scene, State<D>& state, const Workspace<D>& work) {
+  const Index n = static_cast<Index>(state.size());
+#pragma omp parallel for schedule(static)
+  for (Index i = scene.first_fluid; i < n; ++i) {
+    state.position[i] += work.displacement[i];
+    state.velocity[i] += work.velocity_gradient[i] * work.displacement[i];
+  }
+}
+
+template <int D>
+void add_subparticle_dissipation(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  const Index n = static_cast<Index>(state.size());
+  const double factor = scene.lattice.laplacian_factor() * scene.description.scheme.subparticle_dissipation * scene.lattice.spacing;
+#pragma omp parallel for schedule(dynamic, 256)
+  for (Index i = scene.first_fluid; i < n; ++i) {
+    if (state.kind[i] != Kind::fluid) continue;
+    Vector<D> sum = Vector<D>::Zero();
+    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+      const double w = work.link_weight[k];
+      const std::int32_t j = work.neighbors.index[k];
+      if (w == 0 || j < scene.first_fluid) continue;
+      const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
+      const Vector<D> jump = state.velocity[j] - state.velocity[i];
+      sum += w * jump.norm() * (jump - 0.5 * (work.velocity_gradient[i] * r + work.velocity_gradient[j] * r));
+    }
+    work.acceleration[i] += factor * sum;
+  }
+}
+
+template <int D>
+void separate_particles(const Scene<D>& scene, State<D>& state, Workspace<D>& work) {
+  const Index n = static_cast<Index>(state.size());
+  const double l0 = scene.lattice.spacing;
+  work.displacement.assign(n, Vector<D>::Zero());
+  work.velocity_old = state.velocity;
+  std::int64_t behind = 0;
+  double deepest = 0;
+#pragma omp parallel for schedule(dynamic, 256) reduction(+ : behind) reduction(max : deepest)
+  for (Index i = scene.first_fluid; i < n; ++i) {
+    if (state.kind[i] != Kind::fluid) continue;
+    Vector<D> push = Vector<D>::Zero(), slow = Vector<D>::Zero();
+    bool beyond = false;
+    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+      const std::int32_t j = work.neighbors.index[k];
+      const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
+      const double distance = r.norm();
+      if (j >= scene.first_fluid) {
+        if (distance >= 0.7 * l0 || work.link_weight[k] == 0) continue;
+        const Vector<D> along =
+            distance > 1e-9 * l0 ? Vector<D>(r / distance) : Vector<D>(Vector<D>::Unit(i < j ? 0 : D - 1) * (i < j ? 1.0 : -1.0));
+        push -= std::min(0.05 * l0, 0.5 * (0.7 * l0 - distance)) * along;
+        const double closing = (work.velocity_old[i] - work.velocity_old[j]).dot(along);
+        if (distance < 0.6 * l0 && closing > 0) slow -= 0.5 * closing * along;
+      } else if (state.kind[j] != Kind::shell && distance < 1.2 * l0 && work.link_weight[k] != 0) {
+        const Vector<D>& normal = work.boundary_normal[j];
+        const double height = -r.dot(normal) - scene.description.particles.depth[j];  // above the true surface, locally flat
+        const double aside = (r + r.dot(normal) * -normal).norm();
+        if (height > 0.25 * l0 || aside > 0.75 * l0) continue;
+        if (height < 0) beyond = true, deepest = std::max(deepest, -height);
+        const Vector<D> lift = std::min(0.1 * l0, 0.25 * l0 - height) * normal;
+        if (lift.squaredNorm() > push.squaredNorm()) push = lift;
+        const double closing = (work.boundary_velocity[j] - work.velocity_old[i]).dot(normal);
+        if (closing > 0) slow = closing * normal;
+      }
+    }
+    if (beyond) ++behind;
+    work.displacement[i] = push;
+    state.velocity[i] += slow;
+  }
+#pragma omp parallel for schedule(static)
+  for (Index i = scene.first_fluid; i < n; ++i) state.position[i] += work.displacement[i];
+  state.ledger.penetrations += behind;
+  state.ledger.deepest_penetration = std::max(state.ledger.deepest_penetration, deepest);
+}
+
+#define INSTANTIATE(D)                                                                          \
+  template void shifting_displacement(const Scene<D>&, const State<D>&, Workspace<D>&, double); \
+  template void shift_particles(const Scene<D>&, State<D>&, const Workspace<D>&);               \
+  template void add_subparticle_dissipation(const Scene<D>&, const State<D>&, Workspace<D>&);   \
+  template void separate_particles(const Scene<D>&, State<D>&, Workspace<D>&);
+INSTANTIATE(2)
+INSTANTIATE(3)
+#undef INSTANTIATE
+
+}  // namespace sim

@@ -1,0 +1,169 @@
+#include "sim/step.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "sim/number_density.h"
+#include "sim/operators.h"
+#include "sim/parallel.h"
+#include "sim/ports.h"
+#include "sim/pressure.h"
+#include "sim/shifting.h"
+#include "sim/walls.h"
+
+namespace sim {
+namespace {
+using Index = std::ptrdiff_t;
+
+// Gravity and the loads on fluid bodies, m/s².
+template <int D>
+void body_accelerations(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  const std::size_t first = static_cast<std::size_t>(scene.first_fluid);
+  work.acceleration.assign(state.size(), Vector<D>::Zero());
+  if (scene.gravity) add_gravity(*scene.gravity, std::span(work.acceleration).subspan(first));
+  for (const auto& load : scene.description.loads) {
+    if (!load.acceleration || scene.description.bodies[load.body].kind != Kind::fluid) continue;
+    const double factor = load_factor(load, state.time);
+    for (std::size_t i = first; i < state.size(); ++i)
+      if (state.body[i] == load.body) work.acceleration[i] += factor * load.acceleration(state.position[i], state.time);
+  }
+}
+
+// v = v + dt (a - grad p / rho); x = x + dt (v_old + v)/2 in a vessel (second order), x = x + dt v where a free surface makes waves (the
+// mean velocity would let their amplitude grow by w² dt/4 a second).
+template <int D>
+void advance_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt) {
+  const Index n = static_cast<Index>(state.size());
+#pragma omp parallel for schedule(static)
+  for (Index i = scene.first_fluid; i < n; ++i) {
+    if (state.kind[i] == Kind::port) {
+      state.position[i] += dt * state.velocity[i];
+      continue;
+    }
+    const Vector<D> old = state.velocity[i];
+    state.velocity[i] += dt * (work.acceleration[i] - work.pressure_gradient[i] / scene.density[state.body[i]]);
+    state.position[i] += scene.pressure->free_surface ? Vector<D>(dt * state.velocity[i]) : Vector<D>(0.5 * dt * (old + state.velocity[i]));
+  }
+}
+
+template <int D>
+void wrap_positions(const Scene<D>& scene, State<D>& state) {
+  if (!scene.space.any) return;
+  for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i)
+    state.position[i] = scene.space.wrapped(state.position[i]);
+}
+
+// Throws what went wrong with the step just taken, if anything.
+template <int D>
+void check_step(const Scene<D>& scene, const State<D>& state, double dt) {
+  const double l0 = scene.description.spacing;
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const double speed = state.velocity[i].norm();
+    if (std::isfinite(speed) && state.position[i].allFinite() && std::isfinite(state.pressure[i]) &&
+        (i < static_cast<std::size_t>(scene.first_fluid) || speed * dt < l0))
+      continue;
+    char text[240];
+    std::snprintf(text, sizeof text, "%s of particle %lld (body '%s') at (%.4g, %.4g, %.4g) m",
+                  std::isfinite(speed) ? "runaway speed" : "no finite speed", static_cast<long long>(state.id[i]),
+                  scene.description.bodies[state.body[i]].name.c_str(), state.position[i][0], state.position[i][1],
+                  D == 3 ? state.position[i][D - 1] : 0.0);
+    throw NumericalFailure(text);
+  }
+}
+
+template <int D>
+void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
+  prescribe_ports(scene, state, state.time + dt);
+  find_neighborhood(scene, state, work);
+  moment_matrices(scene, state, work);
+  velocity_gradients(scene, state, work);
+  body_accelerations(scene, state, work);
+  if (scene.description.scheme.subparticle_dissipation > 0) add_subparticle_dissipation(scene, state, work);
+  if (scene.viscosity) {
+    particle_viscosity(scene, state, work);
+    if (scene.viscosity->corrected) add_laplacian_correction(scene, state, work);
+    report.viscosity_iterations = solve_viscosity<D>(scene, state, work, dt, {}).iterations;
+  }
+  number_unknowns(scene, state, work);
+  pressure_poisson(scene, state, work, dt);
+  const SolveReport solve = solve_pressure(scene, state, work);
+  report.pressure_iterations = solve.iterations;
+  report.pressure_residual = solve.residual;
+  if (!solve.converged && solve.residual > 100 * scene.description.scheme.pressure_tolerance)
+    throw NumericalFailure("the pressure equation did not converge");
+  state.ledger.pressure_iterations += solve.iterations;
+  pressure_gradients(scene, state, work);
+  shifting_displacement(scene, state, work, dt);
+  advance_fluid(scene, state, work, dt);
+  shift_particles(scene, state, work);
+  separate_particles(scene, state, work);
+  exchange_through_ports(scene, state, dt);
+  remove_escaped(scene, state);
+  wrap_positions(scene, state);
+}
+
+}  // namespace
+
+template <int D>
+void find_neighborhood(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  const std::size_t n = state.size();
+  work.search.assign(n, Search::none);
+  work.is_fluid.assign(n, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool fluid = state.kind[i] == Kind::fluid || state.kind[i] == Kind::port;
+    work.is_fluid[i] = fluid;
+    if (fluid)
+      work.search[i] = Search::all;
+    else if (state.kind[i] != Kind::wall)
+      work.search[i] = Search::fluid_only;
+  }
+  boundary_surfaces(scene, state, work);
+  find_neighbors<D>(work.neighbors, work.grid, state.position, work.search, work.is_fluid, scene.description.domain, scene.lattice.radius);
+  link_weights(scene, state, work);
+  particle_number_density(scene, state, work);
+  find_free_surface(scene, state, work);
+  if (scene.pressure && !scene.pressure->free_surface && state.step > 0) work.surface.assign(n, 0);
+}
+
+template <int D>
+StepReport step(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double until) {
+  StepReport report;
+  const StepLimit limit = time_step_limit(scene, state, until);
+  double dt = limit.step;
+  report.limited_by = limit.name;
+  const State<D> before = state;
+  for (;;) {
+    try {
+      move_walls(scene, state, dt);
+      if (scene.pressure) step_fluid(scene, state, work, dt, report);
+      check_step(scene, state, dt);
+      break;
+    } catch (const NumericalFailure& failure) {
+      state = before;
+      ++state.ledger.refused_steps;
+      if (++report.refused > 6) {
+        char text[400];
+        std::snprintf(text, sizeof text,
+                      "%s at t = %.6g s, even with a step of %.3g s; lower scheme.cfl or time.step, or check the loads and pressures there",
+                      failure.what(), state.time, dt);
+        throw NumericalFailure(text);
+      }
+      dt *= 0.5;
+      report.limited_by = "refused step";
+    }
+  }
+  state.ledger.refused_steps = before.ledger.refused_steps + report.refused;
+  state.time += dt;
+  state.last_step = dt;
+  ++state.step;
+  report.step = dt;
+  return report;
+}
+
+template StepReport step(const Scene<2>&, State<2>&, Workspace<2>&, double);
+template StepReport step(const Scene<3>&, State<3>&, Workspace<3>&, double);
+template void find_neighborhood(const Scene<2>&, const State<2>&, Workspace<2>&);
+template void find_neighborhood(const Scene<3>&, const State<3>&, Workspace<3>&);
+
+}  // namespace sim

@@ -1,0 +1,176 @@
+#include "sim/viscosity.h"
+
+#include <Eigen/Dense>
+
+#include "sim/operators.h"
+
+namespace sim {
+using Index = std::ptrdiff_t;
+
+namespace {
+
+double pair_viscosity(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0; }
+
+// Flux coefficient of the link i-j: mu 2d/(lambda n0) w, times 1/fraction where the no-slip surface lies before the boundary particle.
+template <int D>
+double link_coefficient(const Scene<D>& scene, const Workspace<D>& work, Index i, std::int32_t j, const Vector<D>& r, double w) {
+  const double k = scene.lattice.laplacian_factor() * w;
+  if (j >= scene.first_fluid) return k * pair_viscosity(work.viscosity[i], work.viscosity[j]);
+  return k * work.viscosity[i] / fluid_fraction<D>(r, work.boundary_normal[j], scene.description.particles.depth[j]);
+}
+
+template <int D>
+constexpr int quadratic_terms = D == 2 ? 5 : 9;
+
+// Monomials of a quadratic Taylor expansion, x in units of l0: x_a, x_a²/2, x_a x_b.
+template <int D>
+Eigen::Matrix<double, quadratic_terms<D>, 1> quadratic_monomials(const Vector<D>& x) {
+  Eigen::Matrix<double, quadratic_terms<D>, 1> m;
+  if constexpr (D == 2)
+    m << x[0], x[1], 0.5 * x[0] * x[0], 0.5 * x[1] * x[1], x[0] * x[1];
+  else
+    m << x[0], x[1], x[2], 0.5 * x[0] * x[0], 0.5 * x[1] * x[1], 0.5 * x[2] * x[2], x[0] * x[1], x[0] * x[2], x[1] * x[2];
+  return m;
+}
+
+}  // namespace
+
+template <int D>
+void particle_viscosity(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  const Index n = static_cast<Index>(state.size());
+  work.viscosity.assign(n, 0);
+  const double limit = scene.description.scheme.viscosity_limit;
+#pragma omp parallel for schedule(static)
+  for (Index i = scene.first_fluid; i < n; ++i)
+    work.viscosity[i] = viscosity(scene.description.bodies[state.body[i]].fluid.rheology, shear_rate<D>(work.velocity_gradient[i]), limit);
+}
+
+template <int D>
+void add_laplacian_correction(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  const Index n = static_cast<Index>(state.size());
+  const double l0 = scene.lattice.spacing;
+  constexpr int terms = quadratic_terms<D>;
+  using Column = Eigen::Matrix<double, terms, 1>;
+  using Square = Eigen::Matrix<double, terms, terms>;
+  Column laplacian = Column::Zero();
+  for (int a = 0; a < D; ++a) laplacian[D + a] = 1 / (l0 * l0);
+#pragma omp parallel for schedule(dynamic, 128)
+  for (Index i = scene.first_fluid; i < n; ++i) {
+    if (state.kind[i] != Kind::fluid || work.surface[i] != 0 || work.number_density[i] < 0.8) continue;
+    const std::int64_t first = work.neighbors.start[i], last = work.neighbors.start[i + 1];
+    auto sample = [&](std::int64_t k, std::int32_t j, Vector<D>& r) {
+      r = scene.space.difference(state.position[i], state.position[j]);
+      return j >= scene.first_fluid ? 1.0 : fluid_fraction<D>(r, work.boundary_normal[j], scene.description.particles.depth[j]);
+      (void)k;
+    };
+    Square moment = Square::Zero();
+    Vector<D> r;
+    for (std::int64_t k = first; k < last; ++k) {
+      if (work.link_weight[k] == 0) continue;
+      const double t = sample(k, work.neighbors.index[k], r);
+      const Column m = quadratic_monomials<D>(t / l0 * r);
+      moment.template selfadjointView<Eigen::Lower>().rankUpdate(m, work.link_weight[k]);
+    }
+    const Eigen::LDLT<Square, Eigen::Lower> factor(moment);
+    const auto pivots = factor.vectorD();
+    if (!(pivots.minCoeff() > 1e-4 * pivots.maxCoeff())) continue;  // too few or too one-sided neighbours: keep the MPS Laplacian
+    const Column z = factor.solve(laplacian);
+    Vector<D> sum = Vector<D>::Zero();
+    for (std::int64_t k = first; k < last; ++k) {
+      const double w = work.link_weight[k];
+      if (w == 0) continue;
+      const std::int32_t j = work.neighbors.index[k];
+      const double t = sample(k, j, r);
+      const double consistent = w * z.dot(quadratic_monomials<D>(t / l0 * r));
+      const bool fluid = j >= scene.first_fluid;
+      const double mu = fluid ? pair_viscosity(work.viscosity[i], work.viscosity[j]) : work.viscosity[i];
+      const Vector<D> jump = (fluid ? state.velocity[j] : work.boundary_velocity[j]) - state.velocity[i];
+      sum += (mu * consistent - link_coefficient<D>(scene, work, i, j, r, w)) * jump;
+    }
+    work.acceleration[i] += sum / scene.density[state.body[i]];
+  }
+}
+
+template <int D>
+SolveReport solve_viscosity(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt,
+                            std::span<Vector<D>> boundary_force) {
+  const Index n = static_cast<Index>(state.size()), first = scene.first_fluid;
+  SymmetricMatrix& a = work.viscous_matrix;
+  const Index rows = n - first;
+  a.diagonal.resize(rows);
+  a.start.resize(rows + 1);
+  for (Index i = first; i <= n; ++i) a.start[i - first] = work.neighbors.start[i] - work.neighbors.start[first];
+  a.column.resize(a.start[rows]);
+  a.value.resize(a.start[rows]);
+  std::vector<double>& b = work.viscous_source;
+  b.resize(static_cast<std::size_t>(rows) * D);
+  // Port rows keep their velocity: identity rows. Boundary links are known values: they move to the right-hand side (column = own row, 0).
+#pragma omp parallel for schedule(dynamic, 256)
+  for (Index i = first; i < n; ++i) {
+    const double rho = scene.density[state.body[i]];
+    double diagonal = rho / dt;
+    Vector<D> source = rho / dt * state.velocity[i] + rho * work.acceleration[i];
+    const bool given = state.kind[i] == Kind::port;
+    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+      const std::int32_t j = work.neighbors.index[k];
+      const std::int64_t e = k - work.neighbors.start[first];
+      const double w = work.link_weight[k];
+      a.column[e] = static_cast<std::int32_t>(i - first);
+      a.value[e] = 0;
+      if (w == 0 || given) continue;
+      const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
+      const double c = link_coefficient<D>(scene, work, i, j, r, w);
+      diagonal += c;
+      if (j < first)
+        source += c * work.boundary_velocity[j];
+      else if (state.kind[j] == Kind::port)
+        source += c * state.velocity[j];
+      else
+        a.column[e] = static_cast<std::int32_t>(j - first), a.value[e] = -c;
+    }
+    if (given) source = diagonal * state.velocity[i];
+    a.diagonal[i - first] = diagonal;
+    for (int d = 0; d < D; ++d) b[d * rows + (i - first)] = source[d];
+  }
+  std::vector<double>& x = work.viscous_solution;
+  x.resize(b.size());
+  for (Index i = 0; i < rows; ++i)
+    for (int d = 0; d < D; ++d) x[d * rows + i] = state.velocity[first + i][d] + dt * work.acceleration[first + i][d];
+  SolveReport report;
+  for (int d = 0; d < D; ++d) {
+    const SolveReport one = conjugate_gradient(a, {b.data() + d * rows, static_cast<std::size_t>(rows)},
+                                               {x.data() + d * rows, static_cast<std::size_t>(rows)}, 1e-8, 400, nullptr, work.scratch);
+    report.iterations += one.iterations;
+    report.residual = std::max(report.residual, one.residual);
+    report.converged = report.converged && one.converged;
+  }
+#pragma omp parallel for schedule(static)
+  for (Index i = first; i < n; ++i) {
+    if (state.kind[i] != Kind::fluid) continue;
+    for (int d = 0; d < D; ++d) work.acceleration[i][d] = (x[d * rows + (i - first)] - state.velocity[i][d]) / dt;
+  }
+  if (!boundary_force.empty()) {
+    const Index solids = static_cast<Index>(boundary_force.size());
+#pragma omp parallel for schedule(dynamic, 64)
+    for (Index s = 0; s < solids; ++s)
+      for (std::int64_t k = work.neighbors.start[s]; k < work.neighbors.start[s + 1]; ++k) {
+        const std::int32_t i = work.neighbors.index[k];
+        const double w = work.link_weight[k];
+        if (w == 0 || state.kind[i] != Kind::fluid) continue;
+        const Vector<D> r = scene.space.difference(state.position[i], state.position[s]);
+        const double c = link_coefficient<D>(scene, work, i, static_cast<std::int32_t>(s), r, w);
+        boundary_force[s] += scene.fluid_particle_volume * c * (state.velocity[i] + dt * work.acceleration[i] - work.boundary_velocity[s]);
+      }
+  }
+  return report;
+}
+
+#define INSTANTIATE(D)                                                                     \
+  template void particle_viscosity(const Scene<D>&, const State<D>&, Workspace<D>&);       \
+  template void add_laplacian_correction(const Scene<D>&, const State<D>&, Workspace<D>&); \
+  template SolveReport solve_viscosity(const Scene<D>&, const State<D>&, Workspace<D>&, double, std::span<Vector<D>>);
+INSTANTIATE(2)
+INSTANTIATE(3)
+#undef INSTANTIATE
+
+}  // namespace sim

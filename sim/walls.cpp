@@ -1,0 +1,87 @@
+#include "sim/walls.h"
+
+#include <Eigen/Geometry>
+
+namespace sim {
+namespace {
+
+template <int D>
+bool moves(const Motion<D>& motion) {
+  for (const auto& table : motion.velocity)
+    if (!table.value.empty()) return true;
+  return !motion.angular_velocity.value.empty();
+}
+
+// Velocity of a wall's point x at a time.
+template <int D>
+Vector<D> wall_velocity(const Motion<D>& motion, const Vector<D>& x, double time) {
+  Vector<D> v = Vector<D>::Zero();
+  for (int k = 0; k < D; ++k)
+    if (!motion.velocity[k].value.empty()) v[k] = motion.velocity[k].at(time);
+  if (motion.angular_velocity.value.empty()) return v;
+  const double omega = motion.angular_velocity.at(time);
+  const Vector<D> r = x - motion.center;
+  if constexpr (D == 2)
+    v += omega * Vector<2>(-r[1], r[0]);
+  else
+    v += omega * motion.axis.normalized().cross(r);
+  return v;
+}
+
+// Angle turned between two times, by the midpoint rule over the step.
+template <int D>
+Tensor<D> turn(double angle, const Eigen::Vector3d& axis) {
+  if constexpr (D == 2)
+    return Eigen::Rotation2Dd(angle).toRotationMatrix();
+  else
+    return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+}
+
+}  // namespace
+
+template <int D>
+void move_walls(const Scene<D>& scene, State<D>& state, double dt) {
+  for (const auto& motion : scene.description.motions) {
+    if (!moves(motion)) continue;
+    const Body& body = scene.description.bodies[motion.body];
+    const double middle = state.time + 0.5 * dt;
+    Vector<D> slide = Vector<D>::Zero();
+    for (int k = 0; k < D; ++k)
+      if (!motion.velocity[k].value.empty()) slide[k] = dt * motion.velocity[k].at(middle);
+    Tensor<D> rotation = Tensor<D>::Identity();
+    if (!motion.angular_velocity.value.empty()) rotation = turn<D>(dt * motion.angular_velocity.at(middle), motion.axis);
+    for (std::int64_t i = body.first; i < body.first + body.count; ++i) {
+      state.position[i] = motion.center + rotation * (state.position[i] - motion.center) + slide;
+      state.velocity[i] = wall_velocity(motion, state.position[i], state.time + dt);
+    }
+  }
+}
+
+template <int D>
+void boundary_surfaces(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  const InitialParticles<D>& particles = scene.description.particles;
+  const std::size_t first = static_cast<std::size_t>(scene.first_fluid);
+  work.boundary_normal.assign(particles.normal.begin(), particles.normal.begin() + static_cast<std::ptrdiff_t>(first));
+  work.boundary_velocity.assign(state.velocity.begin(), state.velocity.begin() + static_cast<std::ptrdiff_t>(first));
+  for (const auto& motion : scene.description.motions) {
+    const Body& body = scene.description.bodies[motion.body];
+    if (!motion.angular_velocity.value.empty() && body.count > 1) {
+      // The rotation so far, from two of the body's own particles would be fragile: integrate the table instead.
+      double angle = 0;
+      const int pieces = 64;
+      for (int s = 0; s < pieces; ++s) angle += state.time / pieces * motion.angular_velocity.at(state.time * (s + 0.5) / pieces);
+      const Tensor<D> rotation = turn<D>(angle, motion.axis);
+      for (std::int64_t i = body.first; i < body.first + body.count; ++i) work.boundary_normal[i] = rotation * particles.normal[i];
+    }
+    for (std::int64_t i = body.first; i < body.first + body.count; ++i) work.boundary_velocity[i] += motion.surface_velocity;
+  }
+}
+
+#define INSTANTIATE(D)                                          \
+  template void move_walls(const Scene<D>&, State<D>&, double); \
+  template void boundary_surfaces(const Scene<D>&, const State<D>&, Workspace<D>&);
+INSTANTIATE(2)
+INSTANTIATE(3)
+#undef INSTANTIATE
+
+}  // namespace sim
