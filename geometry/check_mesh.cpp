@@ -109,7 +109,7 @@ MeshTopology measure_topology(const TriangleMesh& mesh) {
     for (end = begin + 1; end < edges.size() && edges[end].low == edges[begin].low && edges[end].high == edges[begin].high;) ++end;
     const std::size_t faces = end - begin;
     if (faces == 1) ++topology.border_edges;
-    if (faces > 2) ++topology.non_manifold_edges;
+    if (faces > 2 && topology.non_manifold_edges++ == 0) topology.non_manifold_at = mesh.vertices[std::size_t(edges[begin].low)];
     if (faces == 2 && edges[begin].forward == edges[begin + 1].forward) ++topology.mismatched_edges;
     for (std::size_t e = begin + 1; e < end; ++e) {
       const std::int32_t a = root_of(parent, edges[begin].triangle), b = root_of(parent, edges[e].triangle);

@@ -23,6 +23,7 @@ struct Defect {
 struct MeshTopology {
   std::size_t border_edges = 0, non_manifold_edges = 0, mismatched_edges = 0;  // mismatched: both faces run along it the same way
   std::size_t components = 0;
+  Eigen::Vector3d non_manifold_at = Eigen::Vector3d::Zero();  // m, the first such edge
   std::vector<std::int32_t> component_of_triangle;
   bool closed() const { return border_edges == 0 && non_manifold_edges == 0; }
 };

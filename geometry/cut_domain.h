@@ -20,7 +20,7 @@ struct DomainPort {
   double area = 0;         // m²
 };
 
-struct CutOptions {
+struct CutOptions {                                             // for an annulus 23 mm wide; scaled with the root's own, 0.3 to 1.3
   double below_annulus_min = 0.012, below_annulus_max = 0.020;  // m along the centreline: cut where the section is smallest within
   double above_junction_min = 0.025, above_junction_max = 0.040;
   double extension = 0.020;  // m, straight; lengthened by what the vessel is too short

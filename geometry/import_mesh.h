@@ -18,7 +18,7 @@ namespace geometry {
 
 struct EndOverride {
   std::string name;  // of an end as reported ("branch2")
-  std::string role;  // ventricle | ascending | descending | branch | end
+  std::string role;  // see OpenEnd::role
 };
 
 struct ImportOptions {

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -248,9 +249,14 @@ double metres_per_unit(std::string_view units) {
       {"mm", 1e-3},   {"millimetre", 1e-3}, {"millimetres", 1e-3}, {"millimeter", 1e-3}, {"millimeters", 1e-3},
       {"um", 1e-6},   {"micrometre", 1e-6}, {"micrometres", 1e-6}, {"micrometer", 1e-6}, {"micrometers", 1e-6},
       {"in", 0.0254}, {"inch", 0.0254}};
+  const std::string text(units);  // "120 mm": one unit of the file is 120 mm
+  char* rest = nullptr;
+  const double number = std::strtod(text.c_str(), &rest);
+  const double factor = rest == text.c_str() ? 1 : number;
+  while (*rest == ' ') ++rest;
   for (const auto& [name, metres] : table)
-    if (name == units) return metres;
-  throw std::runtime_error("unknown units \"" + std::string(units) + "\"; use mm, cm, m or um");
+    if (name == rest && factor > 0 && std::isfinite(factor)) return factor * metres;
+  throw std::runtime_error("unknown units \"" + text + "\"; use mm, cm, m or um, or a number of them as in \"120 mm\"");
 }
 
 LoadedMesh load_mesh(const std::string& path, const LoadLimits& limits) {

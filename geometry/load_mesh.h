@@ -29,7 +29,8 @@ struct LoadLimits {
 // wrong and the mend, whatever the file holds: the parsing happens in a child process that may crash, hang or eat memory in peace.
 LoadedMesh load_mesh(const std::string& path, const LoadLimits& limits = {});
 
-// "m", "cm", "mm", "um" (also "meter", "millimetres"...) -> metres. Throws std::runtime_error naming the known ones.
+// "m", "cm", "mm", "um" (also "meter", "millimetres"...), or a number of them ("120 mm") -> metres. Throws std::runtime_error naming the
+// known ones.
 double metres_per_unit(std::string_view units);
 
 }  // namespace geometry

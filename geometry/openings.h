@@ -12,7 +12,7 @@ namespace geometry {
 
 struct OpenEnd {
   std::string name;                  // unique: its role, numbered where several share it ("branch1")
-  std::string role;                  // ventricle | ascending | descending | branch | end (not known)
+  std::string role;                  // ventricle | ascending | descending | branch; where no arch or root tells: inlet | outlet | branch
   Eigen::Vector3d center;            // m, centroid of the cap
   Eigen::Vector3d normal;            // unit, out of the lumen
   double area = 0;                   // m²
