@@ -7,13 +7,34 @@
 
 namespace render {
 
+namespace {
+
+// Cells all of whose 27 cells (their own and those about it) are full.
+std::vector<std::uint8_t> surrounded(const std::vector<std::uint8_t>& full, const Eigen::Array3i& size) {
+  std::vector<std::uint8_t> result(full.size(), 0);
+  const std::ptrdiff_t row = size.x(), sheet = row * size.y();
+  for (int z = 1; z + 1 < size.z(); ++z)
+    for (int y = 1; y + 1 < size.y(); ++y)
+      for (int x = 1; x + 1 < size.x(); ++x) {
+        const std::ptrdiff_t here = z * sheet + y * row + x;
+        bool all = full[here];
+        for (std::ptrdiff_t dz = -sheet; all && dz <= sheet; dz += sheet)
+          for (std::ptrdiff_t dy = -row; all && dy <= row; dy += row)
+            all = full[here + dz + dy - 1] && full[here + dz + dy] && full[here + dz + dy + 1];
+        result[here] = all;
+      }
+  return result;
+}
+
+}  // namespace
+
 std::vector<std::uint8_t> buried(const std::vector<Eigen::Vector3f>& positions, const std::vector<std::uint8_t>& kept, float radius) {
   std::vector<std::uint8_t> result(positions.size(), 0);
   Bounds bounds;
   for (std::size_t i = 0; i < positions.size(); ++i)
     if (kept[i]) bounds.add(positions[i]);
   if (bounds.empty()) return result;
-  const float cell = 3 * radius;
+  const float cell = 2.5f * radius;
   const Eigen::Array3d cells_wide = ((bounds.max - bounds.min).cast<double>().array() / cell).floor() + 3;  // one empty cell all round
   if (!(cells_wide.prod() < 3e7)) return result;  // thinly spread: nothing much is buried, and the grid would be large
   const Eigen::Array3i size = cells_wide.cast<int>();
@@ -21,20 +42,10 @@ std::vector<std::uint8_t> buried(const std::vector<Eigen::Vector3f>& positions, 
     const Eigen::Array3i at = ((p - bounds.min).array() / cell).floor().cast<int>() + 1;
     return (static_cast<std::size_t>(at.z()) * size.y() + at.y()) * size.x() + at.x();
   };
-  std::vector<std::uint8_t> full(static_cast<std::size_t>(size.prod()), 0), deep(full.size(), 0);
+  std::vector<std::uint8_t> full(static_cast<std::size_t>(size.prod()), 0);
   for (std::size_t i = 0; i < positions.size(); ++i)
     if (kept[i]) full[place(positions[i])] = 1;
-  const std::ptrdiff_t row = size.x(), sheet = row * size.y();
-  for (int z = 1; z + 1 < size.z(); ++z)
-    for (int y = 1; y + 1 < size.y(); ++y)
-      for (int x = 1; x + 1 < size.x(); ++x) {
-        const std::ptrdiff_t here = z * sheet + y * row + x;
-        bool all = true;
-        for (std::ptrdiff_t dz = -sheet; all && dz <= sheet; dz += sheet)
-          for (std::ptrdiff_t dy = -row; all && dy <= row; dy += row)
-            all = full[here + dz + dy - 1] && full[here + dz + dy] && full[here + dz + dy + 1];
-        deep[here] = all;
-      }
+  const std::vector<std::uint8_t> deep = surrounded(surrounded(full, size), size);
   for (std::size_t i = 0; i < positions.size(); ++i) result[i] = kept[i] && deep[place(positions[i])];
   return result;
 }

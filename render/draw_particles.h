@@ -23,7 +23,7 @@ struct Sphere {
 std::vector<Sphere> visible_spheres(const ParticleSet& set, const Style& style, const ColorScale* scale,
                                     const std::optional<ClipPlane>& clip, ParticleShape shape);
 
-// Rows that are surrounded on all sides: every cell (three radii wide) about theirs holds particles, of those that `kept` marks.
+// Rows that are surrounded on all sides: every cell (2.5 radii wide) up to two cells from theirs holds particles, of those `kept` marks.
 std::vector<std::uint8_t> buried(const std::vector<Eigen::Vector3f>& positions, const std::vector<std::uint8_t>& kept, float radius);
 
 // Needs a current context, and a framebuffer with colour and normal bound.

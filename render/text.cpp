@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 namespace render {
@@ -103,8 +104,15 @@ void blend(Image& image, int x, int y, const Color& color, float opacity) {
 void fill(Image& image, float x, float y, float width, float height, const Color& color, float opacity) {
   const int left = static_cast<int>(std::lround(x)), top = static_cast<int>(std::lround(y));
   const int right = static_cast<int>(std::lround(x + width)), bottom = static_cast<int>(std::lround(y + height));
+  const std::uint8_t solid[4] = {static_cast<std::uint8_t>(std::lround(255 * color[0])),
+                                 static_cast<std::uint8_t>(std::lround(255 * color[1])),
+                                 static_cast<std::uint8_t>(std::lround(255 * color[2])), 255};
   for (int row = std::max(top, 0); row < std::min(bottom, image.height); ++row)
-    for (int column = std::max(left, 0); column < std::min(right, image.width); ++column) blend(image, column, row, color, opacity);
+    for (int column = std::max(left, 0); column < std::min(right, image.width); ++column)
+      if (opacity >= 1)
+        std::memcpy(image.at(column, row), solid, 4);
+      else
+        blend(image, column, row, color, opacity);
 }
 
 void stroke(Image& image, float x0, float y0, float x1, float y1, float width, const Color& color, float opacity) {

@@ -29,7 +29,7 @@ void main() {
   vec3 lamp = normalize(vec3(-0.35, 0.5, 0.8));
   float diffuse = max(dot(normal, lamp), 0.0);
   float sky = 0.5 + 0.5 * normal.y;
-  float shine = 0.18 * pow(max(dot(normal, normalize(lamp + vec3(0, 0, 1))), 0.0), 40.0);
-  float light = (0.50 + 0.10 * sky + 0.45 * diffuse) * mix(0.25, 1.0, open_sky);
+  float shine = 0.07 * pow(max(dot(normal, normalize(lamp + vec3(0, 0, 1))), 0.0), 25.0);
+  float light = (0.58 + 0.08 * sky + 0.38 * diffuse) * mix(0.25, 1.0, open_sky);
   color = vec4(min(base.rgb * light + vec3(shine * open_sky), vec3(1)), 1);
 }
