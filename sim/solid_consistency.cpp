@@ -2,6 +2,7 @@
 
 #include <Eigen/Sparse>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -12,19 +13,32 @@ namespace sim {
 
 namespace {
 
+// A piece of the surface where a clamp holds the component: the virtual displacement is 0 there, the reaction is free.
+template <int D>
+bool held_there(const SolidElasticity<D>& solid, const SolidFit& fit, const Vector<D>& offset) {
+  for (std::int64_t l = fit.first; l < fit.first + fit.count; ++l)
+    if (solid.neighbor[l] < 0 && (solid.offset[l] - offset).norm() < 0.3 * solid.spacing) return true;
+  return false;
+}
+
 // sum over surface pieces minus sum over particles, for the displacement component `axis`, row by row.
 template <int D>
 std::vector<Vector<D>> mismatch(const SolidElasticity<D>& solid, int axis) {
   std::vector<Vector<D>> sum(solid.size(), Vector<D>::Zero());
   for (std::size_t i = 0; i < solid.size(); ++i) {
     const SurfacePieces<D> pieces = surface_pieces<D>(solid, i);
-    for (const SurfacePiece<D>& piece : pieces) sum[i] += piece.area;
     for (std::int64_t f = solid.fit_begin[i]; f < solid.fit_begin[i + 1]; ++f) {
       const SolidFit& fit = solid.fits[f];
       if (!(fit.components >> axis & 1)) continue;
+      std::array<bool, D> held{};
+      for (int p = 0; p < pieces.count; ++p) {
+        held[p] = held_there(solid, fit, pieces.piece[p].offset);
+        if (!held[p]) sum[i] += pieces.piece[p].area;
+      }
       for (std::int64_t l = fit.first; l < fit.first + fit.count; ++l) {
         Vector<D> change = -solid.volume[i] * solid.shape[l].template head<D>();
-        for (const SurfacePiece<D>& piece : pieces) change += extrapolation_weight<D>(solid, l, piece.offset) * piece.area;
+        for (int p = 0; p < pieces.count; ++p)
+          if (!held[p]) change += extrapolation_weight<D>(solid, l, pieces.piece[p].offset) * pieces.piece[p].area;
         sum[i] -= change;
         if (solid.neighbor[l] >= 0) sum[solid.neighbor[l]] += change;
       }
@@ -35,12 +49,12 @@ std::vector<Vector<D>> mismatch(const SolidElasticity<D>& solid, int axis) {
   return sum;
 }
 
-// Residual operator of one fit: row l gives e_l of a scalar field over [the particle itself, its links].
+// Residual operator of one fit with the uncorrected shapes: row l gives e_l of a scalar field over [the particle itself, its links].
 template <int D>
-Eigen::MatrixXd residual_operator(const SolidElasticity<D>& solid, const SolidFit& fit) {
+Eigen::MatrixXd residual_operator(const SolidElasticity<D>& solid, const std::vector<FitRow<D>>& uncorrected, const SolidFit& fit) {
   Eigen::MatrixXd shape(fit_size<D>, fit.count), monomial(fit.count, fit_size<D>);
   for (std::int64_t l = 0; l < fit.count; ++l) {
-    shape.col(l) = solid.shape[fit.first + l];
+    shape.col(l) = uncorrected[fit.first + l];
     monomial.row(l) = monomials<D>(solid.offset[fit.first + l]).transpose();
   }
   Eigen::MatrixXd e(fit.count, fit.count + 1);
@@ -50,13 +64,13 @@ Eigen::MatrixXd residual_operator(const SolidElasticity<D>& solid, const SolidFi
 }
 
 template <int D>
-Eigen::SparseMatrix<double> multiplier_matrix(const SolidElasticity<D>& solid, int axis, const std::vector<std::int32_t>& number,
-                                              std::int32_t unknowns) {
+Eigen::SparseMatrix<double> multiplier_matrix(const SolidElasticity<D>& solid, const std::vector<FitRow<D>>& uncorrected, int axis,
+                                              const std::vector<std::int32_t>& number, std::int32_t unknowns) {
   std::vector<Eigen::Triplet<double>> entries;
   double trace = 0;
   for (const SolidFit& fit : solid.fits) {
     if (!(fit.components >> axis & 1)) continue;
-    const Eigen::MatrixXd e = residual_operator<D>(solid, fit);
+    const Eigen::MatrixXd e = residual_operator<D>(solid, uncorrected, fit);
     Eigen::VectorXd weight(fit.count);
     for (std::int64_t l = 0; l < fit.count; ++l) weight(l) = solid.weight[fit.first + l] * solid.volume[fit.row] * solid.volume[fit.row];
     const Eigen::MatrixXd block = e.transpose() * weight.asDiagonal() * e;
@@ -76,14 +90,15 @@ Eigen::SparseMatrix<double> multiplier_matrix(const SolidElasticity<D>& solid, i
 }
 
 template <int D>
-void apply_multipliers(SolidElasticity<D>& solid, int axis, const std::vector<std::int32_t>& number, const Eigen::MatrixXd& multiplier) {
+void apply_multipliers(SolidElasticity<D>& solid, const std::vector<FitRow<D>>& uncorrected, int axis,
+                       const std::vector<std::int32_t>& number, const Eigen::MatrixXd& multiplier) {
   for (const SolidFit& fit : solid.fits) {
     if (!(fit.components >> axis & 1)) continue;
     Eigen::MatrixXd field = Eigen::MatrixXd::Zero(fit.count + 1, D);
     if (number[fit.row] >= 0) field.row(0) = multiplier.row(number[fit.row]);
     for (std::int64_t l = 0; l < fit.count; ++l)
       if (const std::int32_t j = solid.neighbor[fit.first + l]; j >= 0 && number[j] >= 0) field.row(l + 1) = multiplier.row(number[j]);
-    const Eigen::MatrixXd change = residual_operator<D>(solid, fit) * field;
+    const Eigen::MatrixXd change = residual_operator<D>(solid, uncorrected, fit) * field;
     for (std::int64_t l = 0; l < fit.count; ++l)
       solid.shape[fit.first + l].template head<D>() += solid.volume[fit.row] * solid.weight[fit.first + l] * change.row(l).transpose();
   }
@@ -95,6 +110,7 @@ template <int D>
 double make_consistent(SolidElasticity<D>& solid) {
   bool separate = false;  // some particle is held along one axis only: every component has its own fits
   for (const SolidFit& fit : solid.fits) separate = separate || fit.components != (1 << D) - 1;
+  const std::vector<FitRow<D>> uncorrected = solid.shape;
   double left = 0;
   for (int axis = 0; axis < (separate ? D : 1); ++axis) {
     std::vector<std::int32_t> number(solid.size(), -1);
@@ -102,17 +118,27 @@ double make_consistent(SolidElasticity<D>& solid) {
     for (std::size_t i = 0; i < solid.size(); ++i)
       if (!(solid.fixed[i] >> axis & 1)) number[i] = unknowns++;
     SymmetricSolver solver;
-    if (unknowns == 0 || !solver.factorise(multiplier_matrix(solid, axis, number, unknowns))) continue;
-    const std::vector<Vector<D>> wanted = mismatch(solid, axis);
-    Eigen::MatrixXd multiplier(unknowns, D);
-    for (int k = 0; k < D; ++k) {
-      Eigen::VectorXd rhs(unknowns);
-      for (std::size_t i = 0; i < solid.size(); ++i)
-        if (number[i] >= 0) rhs(number[i]) = wanted[i](k);
-      multiplier.col(k) = solver.solve(rhs);
+    if (unknowns == 0 || !solver.factorise(multiplier_matrix(solid, uncorrected, axis, number, unknowns))) continue;
+    // The surface weights change with the gradients: a few rounds.
+    double before = 1e300;
+    for (int round = 0; round < 12; ++round) {
+      const std::vector<Vector<D>> wanted = mismatch(solid, axis);
+      double remaining = 0;
+      for (const Vector<D>& sum : wanted) remaining = std::max(remaining, sum.norm() / std::pow(solid.spacing, D - 1));
+      if (remaining < 1e-12 || remaining > 0.9 * before) {
+        left = std::max(left, remaining);
+        break;
+      }
+      before = remaining;
+      Eigen::MatrixXd multiplier(unknowns, D);
+      for (int k = 0; k < D; ++k) {
+        Eigen::VectorXd rhs(unknowns);
+        for (std::size_t i = 0; i < solid.size(); ++i)
+          if (number[i] >= 0) rhs(number[i]) = wanted[i](k);
+        multiplier.col(k) = solver.solve(rhs);
+      }
+      apply_multipliers(solid, uncorrected, axis, number, multiplier);
     }
-    apply_multipliers(solid, axis, number, multiplier);
-    for (const Vector<D>& remaining : mismatch(solid, axis)) left = std::max(left, remaining.norm() / std::pow(solid.spacing, D - 1));
   }
   return left;
 }

@@ -61,30 +61,25 @@ Links<D> solved_links(const SolidElasticity<D>& solid, const std::vector<ClampPo
   return best;
 }
 
-// Components of a free row that share their links: bit k set together with the lowest component of the group.
+// True where something is held along some axes only (a roller): then each component has fits of its own, everywhere.
 template <int D>
-std::vector<std::uint8_t> component_groups(const SolidElasticity<D>& solid, const std::vector<ClampPoint<D>>& clamps,
-                                           std::span<const std::int32_t> rows, std::span<const std::int32_t> points, std::size_t i) {
-  const auto same = [&](int a, int b) {
-    for (const std::int32_t j : rows)
-      if (solid.body[j] == solid.body[i] && (solid.fixed[j] >> a & 1) != (solid.fixed[j] >> b & 1)) return false;
-    for (const std::int32_t p : points)
-      if (clamps[p].body == solid.body[i] && (clamps[p].axes >> a & 1) != (clamps[p].axes >> b & 1)) return false;
-    return true;
-  };
-  std::vector<std::uint8_t> groups;
-  std::uint8_t done = solid.fixed[i];
-  for (int k = 0; k < D; ++k) {
-    if (done >> k & 1) continue;
-    std::uint8_t group = static_cast<std::uint8_t>(1 << k);
-    for (int other = k + 1; other < D; ++other)
-      if (!(done >> other & 1) && same(k, other)) group |= static_cast<std::uint8_t>(1 << other);
-    done |= group;
-    groups.push_back(group);
-  }
-  return groups;
+bool holds_single_axes(const SolidElasticity<D>& solid, const std::vector<ClampPoint<D>>& clamps) {
+  constexpr std::uint8_t all = (1 << D) - 1;
+  const auto partial = [](std::uint8_t axes) { return axes != 0 && axes != all; };
+  return std::any_of(solid.fixed.begin(), solid.fixed.end(), partial) ||
+         std::any_of(clamps.begin(), clamps.end(), [&](const ClampPoint<D>& clamp) { return partial(clamp.axes); });
 }
 
+// The fits of a free row, as sets of components.
+template <int D>
+std::vector<std::uint8_t> component_groups(const SolidElasticity<D>& solid, std::size_t i, bool separate) {
+  constexpr std::uint8_t all = (1 << D) - 1;
+  std::vector<std::uint8_t> groups;
+  for (int k = 0; k < D && separate; ++k)
+    if (!(solid.fixed[i] >> k & 1)) groups.push_back(static_cast<std::uint8_t>(1 << k));
+  if (!separate && solid.fixed[i] == 0) groups.push_back(all);
+  return groups;
+}
 // The row on the other side of a two-layer sheet: the link closest to the direction across, or -1.
 template <int D>
 std::int32_t row_across(const Links<D>& links, double spacing) {
@@ -197,11 +192,12 @@ void build_fits(SolidElasticity<D>& solid, const std::vector<ClampPoint<D>>& cla
   const NeighborTable rows = points_within<D>(solid.rest, solid.rest, 1.5 * radius);
   const NeighborTable points = points_within<D>(solid.rest, clamp_position, 1.5 * radius);
 
+  const bool separate = holds_single_axes(solid, clamps);
   std::vector<std::vector<std::uint8_t>> groups(n);
   std::vector<std::vector<Links<D>>> links(n);
 #pragma omp parallel for schedule(dynamic, 64)
   for (std::int64_t i = 0; i < static_cast<std::int64_t>(n); ++i) {
-    groups[i] = component_groups(solid, clamps, rows.of(i), points.of(i), i);
+    groups[i] = component_groups(solid, i, separate);
     for (const std::uint8_t group : groups[i])
       links[i].push_back(solved_links(solid, clamps, rows.of(i), points.of(i), i, std::countr_zero(group), radius));
   }
@@ -217,7 +213,7 @@ void build_fits(SolidElasticity<D>& solid, const std::vector<ClampPoint<D>>& cla
         ++flat[solid.body[i]];
         continue;
       }
-      if (groups[i].size() == 1) solid.partner[i] = row_across(link, solid.spacing);
+      if (solid.partner[i] < 0) solid.partner[i] = row_across(link, solid.spacing);
       SolidFit fit{static_cast<std::int32_t>(i), groups[i][g], static_cast<std::int64_t>(solid.neighbor.size()),
                    static_cast<std::int64_t>(link.neighbor.size()), residual_stiffness(solid, link, i)};
       solid.fits.push_back(fit);
