@@ -51,6 +51,9 @@ struct ValveTemplate {
   std::vector<std::string> warnings;                                        // measures out of the usual range and the like
 };
 
+// Labrosse et al. 2006: Lf² = 4 [Rc² + (H - h)²], Lh = Xs + Rb / cos a, h = Xs + Rb tan a, with h = H - Rc tan phi and Xs a share of Rc.
+LeafletMeasures labrosse_measures(double base_radius, double commissure_radius, double commissure_height, const ValveOptions& options);
+
 using WallRadiusFunction = std::function<double(double theta, double z)>;  // m; distance of the wall from the axis
 
 // Throws std::runtime_error with one clear line where no leaflet fits (commissures out of order, height too small, no wall).

@@ -100,7 +100,9 @@ TEST(PlaceParticles, ThinPlateKeepsItsThickness) {
     EXPECT_NEAR(total(plate.surface_area).norm(), 0, 1e-15);
     double top = 0;
     for (const Vector3d& a : plate.surface_area) top += std::max(0.0, a.z());
-    if (layers > 1) EXPECT_NEAR(top, 0.02 * 0.01, 1e-15);
+    if (layers > 1) {
+      EXPECT_NEAR(top, 0.02 * 0.01, 1e-15);
+    }
   }
 }
 
