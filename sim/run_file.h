@@ -77,7 +77,6 @@ struct Checkpoint {
   std::int64_t frames = 0, rows = 0;  // finished when it was taken
   double wall_seconds = 0;            // spent so far
   double next_output = 0;             // s
-  std::vector<double> before;         // probes before the last step (rows of the series are interpolated)
 };
 
 class RunWriter {

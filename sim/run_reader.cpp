@@ -139,7 +139,6 @@ std::pair<State<D>, Checkpoint> RunReader::checkpoint() const {
   checkpoint.rows = h5::integer_attribute(group, "rows");
   checkpoint.wall_seconds = h5::number_attribute(group, "wall_seconds");
   checkpoint.next_output = h5::number_attribute(group, "next_output");
-  checkpoint.before = h5::read_array<double>(group, "before");
   return {std::move(state), checkpoint};
 }
 template std::pair<State<2>, Checkpoint> RunReader::checkpoint<2>() const;

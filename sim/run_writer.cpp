@@ -214,7 +214,6 @@ void RunWriter::set_checkpoint(const State<D>& state, const Checkpoint& checkpoi
   h5::set_attribute(group, "rows", checkpoint.rows);
   h5::set_attribute(group, "wall_seconds", checkpoint.wall_seconds);
   h5::set_attribute(group, "next_output", checkpoint.next_output);
-  h5::write_array(group, "before", checkpoint.before, 1, "", false);
   h5::set_attribute(group, "taken", static_cast<std::int64_t>(1));
 }
 template void RunWriter::set_checkpoint<2>(const State<2>&, const Checkpoint&);

@@ -1,0 +1,45 @@
+#include "app/run_case.h"
+
+#include <omp.h>
+
+#include <cstdio>
+
+#include "app/progress.h"
+
+namespace app {
+namespace {
+
+sim::RunSurface surface_of(const geometry::TriangleMesh& mesh) {
+  sim::RunSurface surface;
+  for (const Eigen::Vector3d& v : mesh.vertices)
+    surface.vertices.push_back({static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])});
+  surface.triangles = mesh.triangles;
+  return surface;
+}
+
+}  // namespace
+
+sim::RunResult run_case(const SceneFile& scene_file, const RunCaseOptions& options) {
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+  sim::RunResult result;
+  with_scene(scene_file, [&](auto& built, const auto& scene) {
+    sim::RunSetup setup;
+    setup.file = options.output, setup.resume = options.resume, setup.checkpoint_seconds = options.checkpoint_seconds;
+    setup.header.program_version = CUSP_VERSION;
+    setup.header.scene_text = scene_file.text, setup.header.settings = scene_file.settings;
+    setup.header.scene_name = scene_file.path.filename().string();
+    setup.header.scene_folder = scene_file.path.parent_path().string();
+    setup.header.lumen = surface_of(built.lumen);
+    setup.warnings = built.warnings;
+    if (!options.quiet)
+      for (const std::string& warning : built.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    ProgressPrinter printer(options.quiet);
+    setup.progress = [&printer](const sim::RunProgress& progress) { printer(progress); };
+    setup.stop = &stop_on_signal();
+    result = sim::run(scene, setup);
+    printer.finish();
+  });
+  return result;
+}
+
+}  // namespace app
