@@ -22,7 +22,6 @@ struct Attempt {
   bool three_lobes = false;  // passed the deciding test
   double order = 0;          // D_annulus / D_junction: smaller is the better direction
   double sinus_diameter = 0, junction_diameter = 0, prominence = 0;
-  Vector3d sinus_center = Vector3d::Zero();
   std::string why;
 };
 
@@ -32,15 +31,6 @@ Centreline reversed(const Centreline& line) {
     out.points.push_back(line.points[i]);
     out.tangents.push_back(-line.tangents[i]);
     out.arc.push_back(line.arc.back() - line.arc[i]);
-  }
-  return out;
-}
-
-BoreProfile reversed(const BoreProfile& bore, double length) {
-  BoreProfile out;
-  for (std::size_t i = bore.arc.size(); i-- > 0;) {
-    out.arc.push_back(length - bore.arc[i]);
-    out.diameter.push_back(bore.diameter[i]);
   }
   return out;
 }
@@ -100,99 +90,164 @@ void place_commissures(const TriangleTree& tree, const Axis& axis, const Lobes& 
   }
 }
 
+// The state of one candidate while its axis settles.
+struct Working {
+  Axis axis;
+  double z_sinus, diameter;  // m
+  double z_junction = 0;     // m
+  Lobes lobes;
+  AorticRoot root;
+  bool inlet_missing;
+};
+
+// Without an outflow tract the axis rests on the sinus's and the junction's own centres.
+void rest_on_sections(const TriangleMesh& lumen, Working& work) {
+  for (int round = 0; round < 4; ++round) {
+    const Section sinus = section_around(lumen, work.axis.at(0, 0, work.z_sinus), work.axis.direction);
+    const auto z_junction = find_junction(lumen, work.axis, work.z_sinus, work.diameter);
+    if (sinus.contour.empty() || !z_junction) return;
+    const Section junction = section_around(lumen, work.axis.at(0, 0, *z_junction), work.axis.direction);
+    if (junction.contour.empty()) return;
+    work.axis = make_axis(sinus.center, junction.center);
+    work.z_sinus = widest_between(lumen, work.axis, -0.2 * work.diameter, 0.2 * work.diameter);
+    work.diameter = section_around(lumen, work.axis.at(0, 0, work.z_sinus), work.axis.direction).diameter();
+  }
+}
+
+Working start_work(const TriangleMesh& lumen, const Centreline& line, const Candidate& candidate) {
+  const Vector3d low = line.points[station_at(line, candidate.annulus_arc)], high = line.points[station_at(line, candidate.junction_arc)];
+  const Vector3d middle = line.points[station_at(line, candidate.sinus_arc)];
+  Working work;
+  work.axis = make_axis(candidate.inlet_missing ? middle : low, high);
+  work.z_sinus = (middle - work.axis.origin).dot(work.axis.direction);
+  work.diameter = candidate.sinus_diameter;
+  work.inlet_missing = candidate.inlet_missing;
+  if (candidate.inlet_missing) rest_on_sections(lumen, work);
+  return work;
+}
+
+std::string settle_junction(const TriangleMesh& lumen, const RootOptions& options, Working& work) {
+  RootPlane& plane = work.root.sinotubular_junction;
+  const auto found = find_junction(lumen, work.axis, work.z_sinus, work.diameter);
+  if (options.sinotubular_junction) {
+    plane = measure_plane(lumen, options.sinotubular_junction->center, options.sinotubular_junction->normal);
+  } else if (found) {
+    plane = measure_plane(lumen, work.axis.at(0, 0, *found), work.axis.direction);
+  } else {
+    return "the sinotubular junction is unresolved: the vessel does not narrow above the sinuses; give its plane";
+  }
+  if (plane.normal.dot(work.axis.direction) < 0) plane.normal *= -1;
+  work.z_junction = plane_height(work.axis, plane);
+  return "";
+}
+
+std::string settle_annulus(const TriangleMesh& lumen, const TriangleTree& tree, const RootOptions& options, Working& work) {
+  AorticRoot& root = work.root;
+  int resolved = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto nadir = find_nadir(tree, work.axis, work.lobes.peak[i], work.z_sinus, work.diameter);
+    if (nadir) root.nadirs[i] = *nadir;
+    resolved += nadir.has_value();
+  }
+  if (options.nadirs) root.nadirs = *options.nadirs;
+  if (options.annulus) {
+    root.annulus = measure_plane(lumen, options.annulus->center, options.annulus->normal);
+  } else if (!options.nadirs && (resolved < 3 || work.inlet_missing)) {
+    return "the annulus is unresolved: no outflow tract below the sinuses";
+  } else {
+    const Vector3d middle = (root.nadirs[0] + root.nadirs[1] + root.nadirs[2]) / 3;
+    root.annulus = measure_plane(lumen, middle, plane_normal(root.nadirs, work.axis.direction));
+  }
+  if (root.annulus.normal.dot(work.axis.direction) < 0) root.annulus.normal *= -1;
+  if (root.annulus.mean_diameter <= 0) return "the annulus is unresolved: no closed section of the lumen in its plane";
+  return "";
+}
+
+// The axis from the annulus to the junction, and the widest section between them.
+void renew_axis(const TriangleMesh& lumen, Working& work) {
+  work.axis = make_axis(work.root.annulus.center, work.root.sinotubular_junction.center);
+  work.z_junction = plane_height(work.axis, work.root.sinotubular_junction);
+  work.z_sinus = widest_between(lumen, work.axis, 0, work.z_junction);
+  work.root.sinuses = measure_plane(lumen, work.axis.at(0, 0, work.z_sinus), work.axis.direction);
+  work.diameter = work.root.sinuses.mean_diameter;
+}
+
+// Nadirs below the lobes in the plane that the user gave.
+void place_nadirs(const TriangleTree& tree, Working& work) {
+  const RootPlane& annulus = work.root.annulus;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double theta = work.lobes.peak[i];
+    const Vector3d direction = std::cos(theta) * work.axis.x_axis + std::sin(theta) * work.axis.y_axis;
+    const Vector3d in_plane = (direction - direction.dot(annulus.normal) * annulus.normal).normalized();
+    const double r = tree.first_hit(annulus.center, in_plane);
+    work.root.nadirs[i] = annulus.center + (std::isinf(r) ? annulus.mean_diameter / 2 : r) * in_plane;
+  }
+}
+
+// Why a found root cannot be one; "" where nothing speaks against it. What the user gave is not doubted.
+std::string doubts_about(const Working& work, const RootOptions& options) {
+  if (options.annulus || options.nadirs) return "";
+  const RootPlane &annulus = work.root.annulus, &sinuses = work.root.sinuses;
+  const double share = annulus.mean_diameter / sinuses.mean_diameter;
+  const double tilt = std::acos(std::clamp(annulus.normal.dot(work.axis.direction), -1.0, 1.0)) * 180 / pi;
+  const double length = work.z_junction / sinuses.mean_diameter;
+  char text[200];
+  if (share < 0.55 || share > 0.95) {
+    std::snprintf(text, sizeof text,
+                  "the annulus is unresolved: the plane through the sinuses' nadirs would be %.1f mm wide against %.1f mm at the sinuses",
+                  1e3 * annulus.mean_diameter, 1e3 * sinuses.mean_diameter);
+    return text;
+  }
+  if (tilt > 35) {
+    std::snprintf(text, sizeof text, "the annulus is unresolved: the plane through the sinuses' nadirs leans by %.0f degrees", tilt);
+    return text;
+  }
+  if (!options.sinotubular_junction && (length < 0.35 || length > 1.6)) {
+    std::snprintf(text, sizeof text, "the annulus is unresolved: it would lie %.1f mm below the junction", 1e3 * work.z_junction);
+    return text;
+  }
+  return "";
+}
+
 // Steps 5-7, repeated while the axis settles.
 Attempt settle_root(const TriangleMesh& lumen, const TriangleTree& tree, const Centreline& line, const Candidate& candidate,
                     const RootOptions& options) {
   Attempt attempt;
   attempt.line = line;
-  const Vector3d low = line.points[station_at(line, candidate.annulus_arc)], high = line.points[station_at(line, candidate.junction_arc)];
-  const Vector3d middle = line.points[station_at(line, candidate.sinus_arc)];
-  Axis axis = make_axis(low, high);
-  if (candidate.inlet_missing) axis = make_axis(middle, high);
-  double z_sinus = (middle - axis.origin).dot(axis.direction), diameter = candidate.sinus_diameter;
-  AorticRoot root;
-  Lobes lobes;
-  double z_junction = 0;
+  Working work = start_work(lumen, line, candidate);
   for (int round = 0; round < 4; ++round) {
-    lobes = find_lobes(tree, axis, z_sinus, diameter);
-    attempt.prominence = lobes.prominence;
-    if (!lobes.found) {
-      attempt.why = "the widening of " + in_millimetres(diameter) + " is not a root: " + lobes.why;
+    work.lobes = find_lobes(tree, work.axis, work.z_sinus, work.diameter);
+    if (!work.lobes.found) {
+      attempt.why = "the widening of " + in_millimetres(work.diameter) + " is not a root: " + work.lobes.why;
       return attempt;
     }
     attempt.three_lobes = true;
-    attempt.sinus_center = axis.at(0, 0, z_sinus);
-    const auto junction = find_junction(lumen, axis, z_sinus, diameter);
-    if (options.sinotubular_junction) {
-      root.sinotubular_junction = measure_plane(lumen, options.sinotubular_junction->center, options.sinotubular_junction->normal);
-    } else if (junction) {
-      root.sinotubular_junction = measure_plane(lumen, axis.at(0, 0, *junction), axis.direction);
-    } else {
-      attempt.why = "the sinotubular junction is unresolved: the vessel does not narrow above the sinuses; give its plane";
+    attempt.prominence = work.lobes.prominence;
+    attempt.sinus_diameter = work.diameter;
+    attempt.why = settle_junction(lumen, options, work);
+    if (!attempt.why.empty()) return attempt;
+    attempt.junction_diameter = work.root.sinotubular_junction.mean_diameter;
+    if (work.inlet_missing && work.diameter < 1.12 * attempt.junction_diameter) {  // an end without an outflow tract has to be clearer
+      attempt.three_lobes = false;
+      attempt.why = "the widening of " + in_millimetres(work.diameter) + " at the end is not a root: the vessel hardly narrows above it";
       return attempt;
     }
-    if (root.sinotubular_junction.normal.dot(axis.direction) < 0) root.sinotubular_junction.normal *= -1;
-    z_junction = plane_height(axis, root.sinotubular_junction);
-    attempt.junction_diameter = root.sinotubular_junction.mean_diameter;
-    attempt.sinus_diameter = section_around(lumen, axis.at(0, 0, z_sinus), axis.direction).diameter();
-    int resolved = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto nadir = find_nadir(tree, axis, lobes.peak[i], z_sinus, diameter);
-      if (!nadir) continue;
-      root.nadirs[i] = *nadir;
-      ++resolved;
-    }
-    if (options.nadirs) root.nadirs = *options.nadirs;
-    if (options.annulus) {
-      root.annulus = measure_plane(lumen, options.annulus->center, options.annulus->normal);
-    } else {
-      if (!options.nadirs && (resolved < 3 || candidate.inlet_missing)) {
-        attempt.why = "the annulus is unresolved: no outflow tract below the sinuses";
-        return attempt;
-      }
-      root.annulus =
-          measure_plane(lumen, (root.nadirs[0] + root.nadirs[1] + root.nadirs[2]) / 3, plane_normal(root.nadirs, axis.direction));
-    }
-    if (root.annulus.normal.dot(axis.direction) < 0) root.annulus.normal *= -1;
-    if (root.annulus.mean_diameter <= 0) {
-      attempt.why = "the annulus is unresolved: no closed section of the lumen through the sinuses' nadirs";
-      return attempt;
-    }
-    axis = make_axis(root.annulus.center, root.sinotubular_junction.center);
-    z_junction = plane_height(axis, root.sinotubular_junction);
-    z_sinus = widest_between(lumen, axis, 0, z_junction);
-    root.sinuses = measure_plane(lumen, axis.at(0, 0, z_sinus), axis.direction);
-    diameter = root.sinuses.mean_diameter;
+    attempt.why = settle_annulus(lumen, tree, options, work);
+    if (!attempt.why.empty()) return attempt;
+    renew_axis(lumen, work);
   }
-  if (options.annulus && !options.nadirs)  // below the lobes, in the plane the user gave
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vector3d direction = std::cos(lobes.peak[i]) * axis.x_axis + std::sin(lobes.peak[i]) * axis.y_axis;
-      const Vector3d in_plane = (direction - direction.dot(root.annulus.normal) * root.annulus.normal).normalized();
-      const double r = tree.first_hit(root.annulus.center, in_plane);
-      root.nadirs[i] = root.annulus.center + (std::isinf(r) ? root.annulus.mean_diameter / 2 : r) * in_plane;
-    }
-  place_commissures(tree, axis, lobes, z_junction, 0, root);
-  if (options.commissures) root.commissures = *options.commissures;
-  attempt.order = root.annulus.mean_diameter / root.sinotubular_junction.mean_diameter;
-  const double share = root.annulus.mean_diameter / root.sinuses.mean_diameter;
-  const double tilt = std::acos(std::clamp(root.annulus.normal.dot(axis.direction), -1.0, 1.0)) * 180 / pi;
-  const double length = z_junction / root.sinuses.mean_diameter;
-  char text[200];
-  if (!options.annulus && !options.nadirs && (share < 0.55 || share > 0.95)) {
-    std::snprintf(text, sizeof text,
-                  "the annulus is unresolved: the plane through the sinuses' nadirs would be %.1f mm wide against %.1f mm at the sinuses",
-                  1e3 * root.annulus.mean_diameter, 1e3 * root.sinuses.mean_diameter);
-    attempt.why = text;
-  } else if (!options.annulus && !options.nadirs && tilt > 35) {
-    std::snprintf(text, sizeof text, "the annulus is unresolved: the plane through the sinuses' nadirs leans by %.0f degrees", tilt);
-    attempt.why = text;
-  } else if (!options.annulus && !options.sinotubular_junction && (length < 0.35 || length > 1.6)) {
-    std::snprintf(text, sizeof text, "the annulus is unresolved: it would lie %.1f mm below the junction", 1e3 * z_junction);
-    attempt.why = text;
-  } else {
-    attempt.root = root;
-  }
+  if (options.annulus && !options.nadirs) place_nadirs(tree, work);
+  place_commissures(tree, work.axis, work.lobes, work.z_junction, 0, work.root);
+  if (options.commissures) work.root.commissures = *options.commissures;
+  attempt.order = work.root.annulus.mean_diameter / work.root.sinotubular_junction.mean_diameter;
+  attempt.why = doubts_about(work, options);
+  if (attempt.why.empty()) attempt.root = work.root;
   return attempt;
+}
+
+bool runs_the_wrong_way(const Centreline& line, const RootOptions& options) {
+  if (!options.ventricle_point) return false;
+  return (line.points.front() - *options.ventricle_point).norm() > (line.points.back() - *options.ventricle_point).norm();
 }
 
 std::string mend_of_annulus(const std::string& why) {
@@ -205,17 +260,19 @@ RootSearch find_aortic_root(const TriangleMesh& lumen, const std::vector<Centrel
   RootSearch search;
   const TriangleTree tree(lumen);
   std::vector<Attempt> attempts;
-  for (const Centreline& given : centrelines) {
-    if (given.size() < 10) continue;
-    const BoreProfile bore = measure_bore(lumen, given);
-    for (const bool backward : {false, true}) {
-      const Centreline line = backward ? reversed(given) : given;
-      if (options.ventricle_point &&
-          (line.points.front() - *options.ventricle_point).norm() > (line.points.back() - *options.ventricle_point).norm())
-        continue;
-      for (const Candidate& candidate : find_widenings(backward ? reversed(bore, given.arc.back()) : bore))
-        attempts.push_back(settle_root(lumen, tree, line, candidate, options));
-    }
+  // First with both ends left out generously; only where that finds nothing, nearly up to the ends.
+  std::vector<BoreProfile> bores;
+  for (const Centreline& given : centrelines) bores.push_back(measure_bore(lumen, given));
+  auto any_root = [&] { return std::any_of(attempts.begin(), attempts.end(), [](const Attempt& a) { return a.root.has_value(); }); };
+  for (const double share : {0.5, 0.15}) {
+    if (any_root()) break;
+    for (std::size_t l = 0; l < centrelines.size(); ++l)
+      for (const bool backward : {false, true}) {
+        const Centreline line = backward ? reversed(centrelines[l]) : centrelines[l];
+        if (line.size() < 10 || runs_the_wrong_way(line, options)) continue;
+        const BoreProfile bore = without_ends(backward ? reversed(bores[l]) : bores[l], share);
+        for (const Candidate& candidate : find_widenings(bore)) attempts.push_back(settle_root(lumen, tree, line, candidate, options));
+      }
   }
   const Attempt* best = nullptr;
   for (const Attempt& attempt : attempts)

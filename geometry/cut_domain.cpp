@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <stdexcept>
 
 #include "geometry/check_mesh.h"
@@ -38,8 +39,9 @@ double crossing_arc(const Centreline& line, const RootPlane& plane) {
   return best;
 }
 
-// The station with the smallest section between two arc lengths; past the line's end: its last station with a section of its own.
-Cut choose_cut(const TriangleMesh& lumen, const Centreline& line, double from, double to, double sign) {
+// The station with the smallest section between two arc lengths; where the vessel ends before: the nearest one at which it is still
+// open (not a cap's edge, not a dome that closes it).
+Cut choose_cut(const TriangleMesh& lumen, const Centreline& line, double from, double to, double sign, double least_area) {
   Cut cut;
   double least = std::numeric_limits<double>::infinity();
   double fallback_gap = std::numeric_limits<double>::infinity();
@@ -49,7 +51,7 @@ Cut choose_cut(const TriangleMesh& lumen, const Centreline& line, double from, d
     const double gap = within ? 0 : std::min(std::abs(s - from), std::abs(s - to));
     if (within ? least == 0 : gap >= fallback_gap) continue;
     const Section section = section_around(lumen, line.points[i], line.tangents[i]);
-    if (section.contour.empty() || std::min(s, line.arc.back() - s) < 0.15 * section.diameter()) continue;  // too near an end: its cap
+    if (section.area < least_area || std::min(s, line.arc.back() - s) < 0.15 * section.diameter()) continue;  // too near an end: its cap
     const bool better = within ? section.area < least || fallback_gap > 0 : gap < fallback_gap;
     if (!better) continue;
     if (within) least = section.area;
@@ -245,10 +247,11 @@ CutDomain cut_domain(const TriangleMesh& lumen, const Centreline& centreline, co
   if (junction_arc <= annulus_arc)
     throw std::runtime_error("the centreline does not run from the annulus to the sinotubular junction; check the root's planes");
   const double scale = std::clamp(root.annulus.mean_diameter / 0.023, 0.3, 1.3);  // an adult's lengths, for a child's root
-  const Cut lower =
-      choose_cut(lumen, centreline, annulus_arc - scale * options.below_annulus_min, annulus_arc - scale * options.below_annulus_max, -1);
+  const double root_area = root.annulus.mean_diameter * root.annulus.mean_diameter * std::numbers::pi / 4;
+  const Cut lower = choose_cut(lumen, centreline, annulus_arc - scale * options.below_annulus_min,
+                               annulus_arc - scale * options.below_annulus_max, -1, 0.6 * root_area);
   const Cut upper = choose_cut(lumen, centreline, junction_arc + scale * options.above_junction_min,
-                               junction_arc + scale * options.above_junction_max, +1);
+                               junction_arc + scale * options.above_junction_max, +1, 0.0);
   CutDomain domain;
   domain.surface = cut_off(cut_off(lumen, lower, root.sinuses.center), upper, root.sinuses.center);
   for (const auto& [cut, name] : {std::pair{lower, "ventricle"}, std::pair{upper, "aorta"}}) {

@@ -125,7 +125,10 @@ void assign_roles(const LumenField& field, ImportResult& result) {
   for (std::size_t i = 0; i < ends.size(); ++i)
     if (i != largest && (second == ends.size() || ends[i].area > ends[second].area)) second = i;
   constexpr double arch_turn = 100 * std::numbers::pi / 180;
-  const bool arch = second < ends.size() && std::acos(std::clamp(-ends[largest].normal.dot(ends[second].normal), -1.0, 1.0)) > arch_turn;
+  // (a ventricle's two valves face the same way too, but lie side by side)
+  const bool arch = second < ends.size() &&
+                    geodesic_distance(field, ends[largest].center, ends[second].center) > 5 * ends[largest].radius &&
+                    std::acos(std::clamp(-ends[largest].normal.dot(ends[second].normal), -1.0, 1.0)) > arch_turn;
   ends[largest].role = arch ? "ascending" : "inlet";
   if (arch)
     ends[second].role = "descending";

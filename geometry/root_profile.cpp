@@ -63,19 +63,37 @@ Axis make_axis(const Vector3d& origin, const Vector3d& toward) {
 }
 
 BoreProfile measure_bore(const TriangleMesh& lumen, const Centreline& line) {
-  std::vector<double> diameter(line.size(), 0);
+  BoreProfile bore;
+  bore.length = line.size() > 0 ? line.arc.back() : 0;
+  bore.arc = line.arc;
+  bore.diameter.assign(line.size(), 0);
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t i = 0; i < line.size(); ++i) {
     const Section section = section_around(lumen, line.points[i], line.tangents[i]);
-    if (!section.contour.empty()) diameter[i] = section.diameter();
+    if (!section.contour.empty()) bore.diameter[i] = section.diameter();
   }
-  BoreProfile profile;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (diameter[i] <= 0 || std::min(line.arc[i], line.arc.back() - line.arc[i]) < 0.5 * diameter[i]) continue;
-    profile.arc.push_back(line.arc[i]);
-    profile.diameter.push_back(diameter[i]);
+  return bore;
+}
+
+BoreProfile reversed(const BoreProfile& bore) {
+  BoreProfile out;
+  out.length = bore.length;
+  for (std::size_t i = bore.arc.size(); i-- > 0;) {
+    out.arc.push_back(bore.length - bore.arc[i]);
+    out.diameter.push_back(bore.diameter[i]);
   }
-  return profile;
+  return out;
+}
+
+BoreProfile without_ends(const BoreProfile& bore, double share) {
+  BoreProfile out;
+  out.length = bore.length;
+  for (std::size_t i = 0; i < bore.arc.size(); ++i) {
+    if (bore.diameter[i] <= 0 || std::min(bore.arc[i], bore.length - bore.arc[i]) < share * bore.diameter[i]) continue;
+    out.arc.push_back(bore.arc[i]);
+    out.diameter.push_back(bore.diameter[i]);
+  }
+  return out;
 }
 
 std::vector<double> gauss_smooth(const std::vector<double>& values, double sigma) {
@@ -93,28 +111,50 @@ std::vector<double> gauss_smooth(const std::vector<double>& values, double sigma
   return out;
 }
 
-std::vector<Candidate> find_widenings(const BoreProfile& profile) {
+namespace {
+
+// First minimum downstream of s that the bore clearly leaves again, or the lowest within 1.2 diameters.
+std::size_t junction_after(const BoreProfile& bore, const std::vector<double>& d, std::size_t s) {
+  std::size_t junction = s;
+  for (std::size_t i = s + 1; i < d.size() && bore.arc[i] - bore.arc[s] < 1.2 * d[s]; ++i) {
+    if (d[i] < d[junction]) junction = i;
+    if (d[i] > 1.03 * d[junction]) break;
+  }
+  return junction;
+}
+
+// Going down from s: the narrowest place before the bore widens again.
+std::size_t annulus_before(const BoreProfile& bore, const std::vector<double>& d, std::size_t s) {
+  std::size_t annulus = s;
+  for (std::size_t i = s; i-- > 0 && bore.arc[s] - bore.arc[i] < 1.2 * d[s];) {
+    if (d[i] < d[annulus]) annulus = i;
+    if (d[i] > 1.05 * d[annulus] && d[s] > 1.12 * d[annulus]) break;
+  }
+  return annulus;
+}
+
+// The profile closes like a dome below the sinus instead of running on as a tube.
+bool closes_below(const BoreProfile& bore, const std::vector<double>& d, std::size_t s, std::size_t annulus) {
+  if (bore.arc[annulus] - bore.arc[0] > 0.15 * d[s]) return false;
+  std::size_t above = annulus;
+  while (above < s && bore.arc[above] - bore.arc[annulus] < 0.15 * d[s]) ++above;
+  return above == annulus || d[above] - d[annulus] > 0.4 * (bore.arc[above] - bore.arc[annulus]);
+}
+
+}  // namespace
+
+std::vector<Candidate> find_widenings(const BoreProfile& bore) {
   std::vector<Candidate> candidates;
-  const std::vector<double> d = gauss_smooth(profile.diameter, 1.5);
-  const std::size_t n = d.size();
-  for (std::size_t s = 1; s + 1 < n; ++s) {
+  if (bore.diameter.size() < 5) return candidates;
+  const std::vector<double> d = gauss_smooth(bore.diameter, 1.5);
+  for (std::size_t s = 1; s + 1 < d.size(); ++s) {
     if (d[s] < d[s - 1] || d[s] <= d[s + 1]) continue;
-    std::size_t junction = s;  // downhill to the first minimum that counts
-    for (std::size_t i = s + 1; i < n && profile.arc[i] - profile.arc[s] < 1.2 * d[s]; ++i) {
-      if (d[i] < d[junction]) junction = i;
-      if (d[i] > 1.03 * d[junction]) break;
-    }
+    const std::size_t junction = junction_after(bore, d, s), annulus = annulus_before(bore, d, s);
     if (d[s] < 1.06 * d[junction]) continue;
-    // Upstream: the first place, going down, that is narrow enough; then on while it still narrows.
-    std::size_t annulus = s;
-    for (std::size_t i = s; i-- > 0 && profile.arc[s] - profile.arc[i] < 1.2 * d[s];) {
-      if (d[i] < d[annulus]) annulus = i;
-      if (d[i] > 1.05 * d[annulus] && d[s] > 1.12 * d[annulus]) break;
-    }
-    Candidate candidate{profile.arc[annulus], profile.arc[s], profile.arc[junction], d[annulus], d[s], d[junction]};
+    Candidate candidate{bore.arc[annulus], bore.arc[s], bore.arc[junction], d[annulus], d[s], d[junction]};
+    candidate.inlet_missing = closes_below(bore, d, s, annulus);
     const bool narrow_inlet = d[s] >= 1.12 * d[annulus] && d[annulus] <= 1.08 * d[junction];
-    candidate.inlet_missing = !narrow_inlet && profile.arc[annulus] - profile.arc[0] < 0.15 * d[s];
-    const double length = profile.arc[junction] - profile.arc[annulus];
+    const double length = bore.arc[junction] - bore.arc[annulus];
     if (candidate.inlet_missing || (narrow_inlet && length > 0.45 * d[s] && length < 1.9 * d[s])) candidates.push_back(candidate);
   }
   return candidates;

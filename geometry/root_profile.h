@@ -20,12 +20,15 @@ struct Axis {
 };
 Axis make_axis(const Eigen::Vector3d& origin, const Eigen::Vector3d& toward);
 
-// Diameters D(s) of the sections across a centreline; stations nearer than half a bore to its ends are left out (a cap's own edge would
-// pass for wall), as are those without a closed contour.
+// Diameters D(s) of the sections across a centreline; 0 where there is no closed contour.
 struct BoreProfile {
   std::vector<double> arc, diameter;  // m
+  double length = 0;                  // m, of the whole centreline
 };
 BoreProfile measure_bore(const TriangleMesh& lumen, const Centreline& line);
+BoreProfile reversed(const BoreProfile& bore);
+// Leaves out the stations nearer than `share` diameters to the line's ends: there a cap's own edge would pass for wall.
+BoreProfile without_ends(const BoreProfile& bore, double share);
 std::vector<double> gauss_smooth(const std::vector<double>& values, double sigma);  // sigma in samples
 
 // A widening between two narrower places, on the way from the ventricle (smaller s) to the aorta.
