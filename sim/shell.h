@@ -8,7 +8,6 @@
 //   A h/2 [W(C - 2 z kappa) + W(C + 2 z kappa)], z = h / (2 sqrt 3): both through-thickness Gauss points (= h^2/24 C:kappa:kappa at small
 //   strain)
 //   + A h s^2/24 sum_k gamma_k : C : gamma_k, gamma_k = (d_k C)/2, s^2 = A: strain varying within the cell (stops in-plane saw-tooth)
-//   + c/2 sum_j w |d_ij - fit|^2: the weak residual.
 // Forces are its exact gradient up to the limiter; all terms are rotation invariant.
 #pragma once
 
@@ -60,11 +59,11 @@ struct ShellElasticity {
   std::vector<double> membrane_weight, bending_weight;  // energy factors at a clamp's face; else 1
   // rest neighbours, compressed rows
   std::vector<std::int32_t> start, neighbor;
-  std::vector<double> fit;                                               // terms per pair: g (1/m), q (1/m2)
-  std::vector<double> fit_sum;                                           // per row: sum of its pairs' fits
-  std::vector<double> residual_weight, residual_rest;                    // per pair: c w (N/m), normal residual at rest (m)
-  std::vector<Padded<D>> monomial;                                       // 2-D: (xi, xi^2/2); 3-D: (X, Y, 0, 0) rest tangent coordinates, m
-  std::vector<std::int32_t> reverse_start, reverse_pair, reverse_owner;  // pairs in which a row is the neighbour
+  std::vector<double> fit;                                 // terms per pair: g (1/m), q (1/m2)
+  std::vector<std::array<Padded<D>, D - 1>> held_tangent;  // per row: what a held row adds to its fitted tangents (else unused)
+  std::vector<double> fit_sum;                             // per row: sum of its pairs' fits
+  std::vector<std::int32_t> reverse_start, reverse_owner;  // pairs in which a row is the neighbour, and their fits
+  std::vector<double> reverse_fit;
   // near pairs (both directions): dashpot and stretch limiter
   std::vector<std::int32_t> bond_start, bond;
   std::vector<double> bond_length, bond_mass;         // m, kg

@@ -11,11 +11,10 @@
 namespace sim {
 namespace {
 
-constexpr double kernel_radius = 2.1;       // of the body's spacing
-constexpr double near_distance = 1.35;      // of the spacing: bonds, and which rows lie at a clamp's face
-constexpr double ridge = 1e-4;              // on second derivatives (numerics-elastic.md 3(ii))
-constexpr double residual_strength = 0.02;  // alpha
-constexpr double same_sheet = 0.3;          // smallest cosine between normals of neighbours: folds are not bridged
+constexpr double kernel_radius = 2.1;   // of the body's spacing
+constexpr double near_distance = 1.35;  // of the spacing: bonds, and which rows lie at a clamp's face
+constexpr double ridge = 1e-4;          // on second derivatives (numerics-elastic.md 3(ii))
+constexpr double same_sheet = 0.3;      // smallest cosine between normals of neighbours: folds are not bridged
 
 template <int D>
 using Terms = Eigen::Matrix<double, ShellElasticity<D>::terms, 1>;
@@ -34,6 +33,13 @@ Terms<D> monomials(const Vector<D>& offset, const std::array<Vector<D>, D - 1>& 
     m << x, y, 0.5 * x * x, 0.5 * y * y, x * y;
   }
   return m;
+}
+
+template <int D>
+Padded<D> pad(const Vector<D>& v) {
+  Padded<D> p = Padded<D>::Zero();
+  p.template head<D>() = v;
+  return p;
 }
 
 // Right-handed tangents of a normal; the first along the fibre where there is one.
@@ -55,7 +61,7 @@ bool clamped(const ShellElasticity<D>& shells, std::int32_t i) {
 }
 
 // A clamp acts at the fixed region's face, half way between the last held and the first free row. The held row there stands for the stretch
-// between face and first free row (weight 16/3 makes its half bond twice as stiff); the bending of the first free cell is shared by the
+// between face and first free row (weight 4/3 makes its half bond twice as stiff); the bending of the first free cell is shared by the
 // hinges at the held row (4: the parabola of a rigid tangent) and at the free row (4/3): 1/4 + 3/4 = 1. Held rows behind take no part.
 template <int D>
 void weigh_clamps(ShellElasticity<D>& shells, const ShellBody& body, const PointGrid<D>& grid) {
@@ -65,7 +71,7 @@ void weigh_clamps(ShellElasticity<D>& shells, const ShellBody& body, const Point
     grid.for_each_near(shells.rest_position[i], near_distance * body.spacing,
                        [&](std::int32_t local, double) { at_face = at_face || clamped(shells, body.first + local) != held; });
     if (held) {
-      shells.membrane_weight[i] = at_face ? 16.0 / 3 : 0.0;
+      shells.membrane_weight[i] = at_face ? 4.0 / 3 : 0.0;
       shells.bending_weight[i] = at_face ? 1.0 : 0.0;
     } else if (at_face) {
       shells.bending_weight[i] = 4.0 / 3;
@@ -148,51 +154,53 @@ void align_with_surface(ShellElasticity<D>& shells, const ShellBody& body, const
   }
 }
 
-// Pairs of one particle: g and q of the fit, the residual's weight. A clamped particle keeps its rest tangents: its curvature is that
-// of a parabola towards the free side, H = 2 (d . N) / distance^2 (one-term fit along nu, the direction of its free neighbours).
+// Pairs of one particle: g and q of the fit. A held particle looks only towards the free side (direction nu): its stretch along nu is that
+// of the bond to the first free row (the other tangent stays), its curvature that of a parabola on the rest tangents, H = 2 (d . N) /
+// distance^2.
 template <int D>
 void append_pairs(ShellElasticity<D>& shells, const ShellBody& body, std::int32_t i, const Neighborhood<D>& near) {
   constexpr int terms = ShellElasticity<D>::terms, linear = D - 1;
   const double s = body.spacing;
   Vector<D> towards_free = Vector<D>::Zero();
-  double moment = 0, spread = 0;
+  double length = 0, moment = 0;
   const bool held = clamped(shells, i);
+  shells.held_tangent.emplace_back();
+  for (int a = 0; a < linear; ++a) shells.held_tangent.back()[a] = pad(shells.tangent[i][a]);
   auto offset_of = [&](std::size_t k) -> Vector<D> { return shells.rest_position[near.rows[k]] - shells.rest_position[i]; };
   if (held) {
     for (std::size_t k = 0; k < near.rows.size(); ++k)
       if (!clamped(shells, near.rows[k])) towards_free += near.weight[k] * offset_of(k).normalized();
     towards_free.normalize();
     for (std::size_t k = 0; k < near.rows.size(); ++k)
-      if (!clamped(shells, near.rows[k]))
-        moment += near.weight[k] * std::pow(0.5 * std::pow(std::max(0.0, offset_of(k).dot(towards_free)), 2), 2);
+      if (!clamped(shells, near.rows[k])) {
+        const double along = std::max(0.0, offset_of(k).dot(towards_free));
+        length += near.weight[k] * along * along;
+        moment += 0.25 * near.weight[k] * along * along * along * along;
+      }
   }
-  for (std::size_t k = 0; k < near.rows.size(); ++k) spread += near.weight[k] * offset_of(k).squaredNorm();
-  const double stiffness =
-      held ? 0
-           : 2 * residual_strength * body.material.youngs_modulus * shells.stiffness_scale[i] * body.thickness * shells.area[i] / spread;
   for (std::size_t k = 0; k < near.rows.size(); ++k) {
     const Terms<D> m = monomials<D>(offset_of(k), shells.tangent[i], s);
     Terms<D> fit = near.inverse * (near.weight[k] * m);
     fit.template head<linear>() /= s;
     fit.template tail<terms - linear>() /= s * s;
     if (held) {
-      fit.template tail<terms - linear>().setZero();
+      fit.setZero();
       const double along = offset_of(k).dot(towards_free);
       if (!clamped(shells, near.rows[k]) && along > 0 && moment > 0) {
-        const double q = near.weight[k] * 0.5 * along * along / moment;
+        const double g = near.weight[k] * along / length, q = near.weight[k] * 0.5 * along * along / moment;
         Vector<D - 1> nu;
-        for (int a = 0; a < D - 1; ++a) nu[a] = towards_free.dot(shells.tangent[i][a]);
+        for (int a = 0; a < linear; ++a) nu[a] = towards_free.dot(shells.tangent[i][a]);
         nu.normalize();
-        for (int a = 0; a < linear; ++a) fit[linear + a] = q * nu[a] * nu[a];
+        for (int a = 0; a < linear; ++a) {
+          fit[a] = g * nu[a];
+          fit[linear + a] = q * nu[a] * nu[a];
+          shells.held_tangent.back()[a] -= pad(Vector<D>(fit[a] * offset_of(k)));
+        }
         if constexpr (D == 3) fit[4] = q * nu[0] * nu[1];
       }
     }
     shells.neighbor.push_back(near.rows[k]);
     for (int t = 0; t < terms; ++t) shells.fit.push_back(fit[t]);
-    shells.residual_weight.push_back(stiffness * near.weight[k]);
-    Padded<D> coordinates = Padded<D>::Zero();
-    for (int a = 0; a < linear; ++a) coordinates[a] = m[a] * s;
-    shells.monomial.push_back(coordinates);
   }
   for (int t = 0; t < terms; ++t) {
     double sum = 0;
@@ -202,7 +210,7 @@ void append_pairs(ShellElasticity<D>& shells, const ShellBody& body, std::int32_
   shells.start.push_back(static_cast<std::int32_t>(shells.neighbor.size()));
 }
 
-// kappa0 and the rest residual along the normal.
+// kappa0 = N . H at rest.
 template <int D>
 void measure_rest_curvature(ShellElasticity<D>& shells, std::int32_t i) {
   constexpr int terms = ShellElasticity<D>::terms, linear = D - 1;
@@ -212,11 +220,6 @@ void measure_rest_curvature(ShellElasticity<D>& shells, std::int32_t i) {
     for (int t = linear; t < terms; ++t) h[t - linear] += shells.fit[p * terms + t] * height;
   }
   shells.rest_curvature[i] = {h[0], h[1], h[2]};
-  for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p) {
-    const double height = (shells.rest_position[shells.neighbor[p]] - shells.rest_position[i]).dot(shells.normal[i]);
-    const double x = shells.monomial[p][0], y = D == 3 ? shells.monomial[p][1] : 0.0;
-    shells.residual_rest.push_back(height - 0.5 * h[0] * x * x - 0.5 * h[1] * y * y - h[2] * x * y);
-  }
 }
 
 template <int D>
@@ -293,17 +296,18 @@ void append_body(ShellElasticity<D>& shells, const SceneDescription<D>& descript
 
 template <int D>
 void reverse_pairs(ShellElasticity<D>& shells) {
+  constexpr int count = ShellElasticity<D>::terms;
   const std::size_t rows = shells.size();
   shells.reverse_start.assign(rows + 1, 0);
   for (std::int32_t j : shells.neighbor) ++shells.reverse_start[j + 1];
   for (std::size_t j = 0; j < rows; ++j) shells.reverse_start[j + 1] += shells.reverse_start[j];
-  shells.reverse_pair.resize(shells.neighbor.size());
+  shells.reverse_fit.resize(shells.fit.size());
   shells.reverse_owner.resize(shells.neighbor.size());
   auto next = shells.reverse_start;
   for (std::size_t i = 0; i < rows; ++i)
     for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p) {
       const std::int32_t slot = next[shells.neighbor[p]]++;
-      shells.reverse_pair[slot] = p;
+      std::copy_n(&shells.fit[p * count], count, &shells.reverse_fit[slot * count]);
       shells.reverse_owner[slot] = static_cast<std::int32_t>(i);
     }
 }

@@ -21,18 +21,17 @@ std::int64_t shell_forces(const ShellElasticity<D>& shells, std::span<const Vect
   const auto rows = static_cast<std::int32_t>(shells.size());
   const std::vector<Padded<D>> x = padded<D>(position), v = padded<D>(velocity);
   std::vector<std::array<Padded<D>, terms<D>>> derivative(shells.size());
-  std::vector<Padded<D>> pair_force(shells.neighbor.size()), own(shells.size());
+  std::vector<Padded<D>> own(shells.size());
   std::int64_t limited_rows = 0;
 #pragma omp parallel reduction(+ : limited_rows) if (rows > 200)
   {
 #pragma omp for schedule(static)
     for (std::int32_t i = 0; i < rows; ++i) {
       Padded<D> normal;
-      limited_rows += differentiate_row(shells, x.data(), v.data(), i, derivative[i], pair_force.data(), own[i], normal);
+      limited_rows += differentiate_row(shells, x.data(), v.data(), i, derivative[i], own[i], normal);
     }
 #pragma omp for schedule(static)
-    for (std::int32_t j = 0; j < rows; ++j)
-      force[j] = (own[j] + gather_force(shells, derivative.data(), pair_force.data(), j)).template head<D>();
+    for (std::int32_t j = 0; j < rows; ++j) force[j] = (own[j] + gather_force(shells, derivative.data(), j)).template head<D>();
   }
   return limited_rows;
 }
@@ -57,8 +56,6 @@ double shell_energy(const ShellElasticity<D>& shells, std::span<const Vector<D>>
       const SheetTensor gamma = strain_gradient(k, direction);
       total += cell * plane_stress_hooke(body.material, gamma).dot(gamma);
     }
-    for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p)
-      total += 0.5 * shells.residual_weight[p] * residual(shells, k, Padded<D>(x[shells.neighbor[p]] - x[i]), p).squaredNorm();
   }
   return total;
 }

@@ -66,6 +66,8 @@ Kinematics<D> kinematics(const ShellElasticity<D>& shells, const Padded<D>* x, s
   constexpr int count = terms<D>;
   Kinematics<D> k;
   for (auto& b : k.value) b.setZero();
+  if (is_clamped(shells, i))
+    for (int a = 0; a < D - 1; ++a) k.value[a] = shells.held_tangent[i][a];
   const Padded<D> center = x[i];
   const double* fit = &shells.fit[static_cast<std::size_t>(shells.start[i]) * count];
   for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p, fit += count) {
@@ -114,29 +116,16 @@ inline void add_normal_change(const Kinematics<3>& k, const Padded<3>& y, std::a
   out[1] -= ((k.metric.xx * y2 - k.metric.xy * y1) * f) * k.normal;
 }
 
-// d_ij minus the fit minus the rest residual along n.
-template <int D>
-Padded<D> residual(const ShellElasticity<D>& shells, const Kinematics<D>& k, const Padded<D>& d, std::int32_t p) {
-  const Padded<D>& m = shells.monomial[p];
-  if constexpr (D == 2) {
-    return d - m[0] * k.value[0] - 0.5 * m[0] * m[0] * k.value[1] - shells.residual_rest[p] * k.normal;
-  } else {
-    return d - m[0] * k.value[0] - m[1] * k.value[1] - 0.5 * m[0] * m[0] * k.value[2] - 0.5 * m[1] * m[1] * k.value[3] -
-           m[0] * m[1] * k.value[4] - shells.residual_rest[p] * k.normal;
-  }
-}
-
 // The held rows behind a clamp's face store no energy.
 template <int D>
 bool idle(const ShellElasticity<D>& shells, std::int32_t i) {
   return shells.membrane_weight[i] == 0;
 }
 
-// Derivatives of one particle's energy by its fitted terms, N (a_a) and N m (H): force = sum derivative * fit. The residual's pull on the
-// normal comes in by `normal_pull`; the residual is added by `residual_forces`. Returns whether the law was limited.
+// Derivatives of one particle's energy by its fitted terms, N m (a_a) and N m2 (H): force = sum derivative * fit. Returns whether the law
+// was limited.
 template <int D>
-bool energy_derivatives(const ShellElasticity<D>& shells, std::int32_t i, const Kinematics<D>& k, const Padded<D>& normal_pull,
-                        std::array<Padded<D>, terms<D>>& out) {
+bool energy_derivatives(const ShellElasticity<D>& shells, std::int32_t i, const Kinematics<D>& k, std::array<Padded<D>, terms<D>>& out) {
   const ShellBody& body = shells.bodies[shells.body[i]];
   const SheetMaterial& material = body.material;
   const double volume = shells.area[i] * body.thickness * shells.stiffness_scale[i];
@@ -149,18 +138,18 @@ bool energy_derivatives(const ShellElasticity<D>& shells, std::int32_t i, const 
     n = n + sheet_stress(material, k.metric, shells.fibre[i]) * (volume * (shells.membrane_weight[i] - shells.bending_weight[i]));
   const SheetTensor m = (lower - upper) * (0.5 * z * volume * shells.bending_weight[i]);
   const auto& b = k.value;
-  Padded<D> y = normal_pull;  // derivative by the normal
+  Padded<D> y;  // derivative by the normal
   if constexpr (D == 2) {
     out[0] = n.xx * b[0];
     out[1] = m.xx * k.normal;
-    y += m.xx * b[1];
+    y = m.xx * b[1];
   } else {
     out[0] = n.xx * b[0] + n.xy * b[1];
     out[1] = n.xy * b[0] + n.yy * b[1];
     out[2] = m.xx * k.normal;
     out[3] = m.yy * k.normal;
     out[4] = 2 * m.xy * k.normal;
-    y += m.xx * b[2] + m.yy * b[3] + 2 * m.xy * b[4];
+    y = m.xx * b[2] + m.yy * b[3] + 2 * m.xy * b[4];
   }
   if (is_clamped(shells, i)) return limited;
   const double cell = volume * (D == 3 ? shells.area[i] : shells.area[i] * shells.area[i]) / 12;
@@ -170,43 +159,20 @@ bool energy_derivatives(const ShellElasticity<D>& shells, std::int32_t i, const 
   return limited;
 }
 
-// Residual force of each pair of row i; returns its derivative by the normal.
-template <int D>
-Padded<D> residual_forces(const ShellElasticity<D>& shells, const Padded<D>* x, std::int32_t i, const Kinematics<D>& k,
-                          Padded<D>* pair_force) {
-  Padded<D> normal_pull = Padded<D>::Zero();
-  const Padded<D> center = x[i];
-  for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p) {
-    pair_force[p] = residual(shells, k, Padded<D>(x[shells.neighbor[p]] - center), p) * shells.residual_weight[p];
-    normal_pull -= shells.residual_rest[p] * pair_force[p];
-  }
-  return normal_pull;
-}
-
 // Elastic force on row j: minus what its pairs as a neighbour carry, plus what it owns.
 template <int D>
-Padded<D> gather_force(const ShellElasticity<D>& shells, const std::array<Padded<D>, terms<D>>* derivative, const Padded<D>* pair_force,
-                       std::int32_t j) {
+Padded<D> gather_force(const ShellElasticity<D>& shells, const std::array<Padded<D>, terms<D>>* derivative, std::int32_t j) {
   constexpr int count = terms<D>;
-  Padded<D> force = Padded<D>::Zero();
-  for (std::int32_t s = shells.reverse_start[j]; s < shells.reverse_start[j + 1]; ++s) {
-    const std::int32_t p = shells.reverse_pair[s];
-    const double* fit = &shells.fit[static_cast<std::size_t>(p) * count];
+  std::array<Padded<D>, count> sum;  // one chain per term: the additions overlap
+  const double* fit = &shells.fit_sum[static_cast<std::size_t>(j) * count];
+  for (int a = 0; a < count; ++a) sum[a] = fit[a] * derivative[j][a];
+  fit = shells.reverse_fit.data() + static_cast<std::size_t>(shells.reverse_start[j]) * count;
+  for (std::int32_t s = shells.reverse_start[j]; s < shells.reverse_start[j + 1]; ++s, fit += count) {
     const auto& t = derivative[shells.reverse_owner[s]];
-    Padded<D> sum = pair_force[p];
-    for (int a = 0; a < count; ++a) sum += fit[a] * t[a];
-    force -= sum;
+    for (int a = 0; a < count; ++a) sum[a] -= fit[a] * t[a];
   }
-  return force;
-}
-
-// What row i's own pairs put on it: the sum over its pairs of derivative . fit + residual force.
-template <int D>
-Padded<D> own_force(const ShellElasticity<D>& shells, const std::array<Padded<D>, terms<D>>& derivative, const Padded<D>* pair_force,
-                    std::int32_t i) {
-  Padded<D> force = Padded<D>::Zero();
-  for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p) force += pair_force[p];
-  for (int a = 0; a < terms<D>; ++a) force += shells.fit_sum[static_cast<std::size_t>(i) * terms<D> + a] * derivative[a];
+  Padded<D> force = sum[0];
+  for (int a = 1; a < count; ++a) force += sum[a];
   return force;
 }
 
@@ -232,22 +198,20 @@ Padded<D> bond_force(const ShellElasticity<D>& shells, const Padded<D>* x, const
   return force;
 }
 
-// Everything one row owns: derivatives, pair forces, the force on the row itself and its normal. Returns whether a limiter acted.
+// Everything one row owns: derivatives, the bond force on it and its normal. Returns whether a limiter acted.
 template <int D>
 bool differentiate_row(const ShellElasticity<D>& shells, const Padded<D>* x, const Padded<D>* v, std::int32_t i,
-                       std::array<Padded<D>, terms<D>>& derivative, Padded<D>* pair_force, Padded<D>& own, Padded<D>& normal) {
-  bool limited = false;
-  const Kinematics<D> k = kinematics(shells, x, i);
-  normal = k.normal;
+                       std::array<Padded<D>, terms<D>>& derivative, Padded<D>& own, Padded<D>& normal) {
   if (idle(shells, i)) {
     for (auto& t : derivative) t.setZero();
-    for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p) pair_force[p].setZero();
     own.setZero();
+    normal = pad<D>(shells.normal[i]);
     return false;
   }
-  const Padded<D> pull = residual_forces(shells, x, i, k, pair_force);
-  limited = energy_derivatives(shells, i, k, pull, derivative);
-  own = own_force(shells, derivative, pair_force, i) + bond_force(shells, x, v, i, limited);
+  const Kinematics<D> k = kinematics(shells, x, i);
+  normal = k.normal;
+  bool limited = energy_derivatives(shells, i, k, derivative);
+  own = bond_force(shells, x, v, i, limited);
   return limited;
 }
 

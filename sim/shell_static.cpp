@@ -1,5 +1,5 @@
-// Equilibrium of shells: Newton's method. The tangent is assembled from each particle's own 15 x 15 (2-D: 4 x 4) second derivative; follower
-// loads enter by a GMRES iteration on differences of the full residual, preconditioned by the factorised tangent.
+// Equilibrium of shells: Newton's method. The tangent is assembled from each particle's own 15 x 15 (2-D: 4 x 4) second derivative;
+// follower loads enter by a GMRES iteration on differences of the full residual, preconditioned by the factorised tangent.
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
@@ -21,7 +21,7 @@ using Solver = Eigen::SimplicialLDLT<SparseMatrix>;
 
 // Second derivative of one particle's energy by its fitted terms, by central differences of the first.
 template <int D>
-LocalHessian<D> local_hessian(const ShellElasticity<D>& shells, std::int32_t i, const Kinematics<D>& k, const Padded<D>& pull) {
+LocalHessian<D> local_hessian(const ShellElasticity<D>& shells, std::int32_t i, const Kinematics<D>& k) {
   constexpr int linear = D - 1;
   LocalHessian<D> hessian;
   const double spacing = shells.bodies[shells.body[i]].spacing;
@@ -33,32 +33,11 @@ LocalHessian<D> local_hessian(const ShellElasticity<D>& shells, std::int32_t i, 
         Kinematics<D> moved = k;
         moved.value[t][c] += sign * h;
         complete(shells, i, moved);
-        energy_derivatives(shells, i, moved, pull, sign > 0 ? plus : minus);
+        energy_derivatives(shells, i, moved, sign > 0 ? plus : minus);
       }
-      for (int u = 0; u < terms<D>; ++u)
-        hessian.template block<D, 1>(u * D, t * D + c) = (plus[u] - minus[u]).template head<D>() / (2 * h);
+      for (int u = 0; u < terms<D>; ++u) hessian.template block<D, 1>(u * D, t * D + c) = (plus[u] - minus[u]).template head<D>() / (2 * h);
     }
   return 0.5 * (hessian + hessian.transpose());
-}
-
-// Stiffness of the residual of one particle in its neighbours' offsets (same for each component): A^T W A, A = I - m fit.
-template <int D>
-Eigen::MatrixXd residual_stiffness(const ShellElasticity<D>& shells, std::int32_t i) {
-  const std::int32_t first = shells.start[i], count = shells.start[i + 1] - first;
-  Eigen::MatrixXd a = Eigen::MatrixXd::Identity(count, count);
-  Eigen::VectorXd w(count);
-  for (std::int32_t s = 0; s < count; ++s) {
-    const auto& m = shells.monomial[first + s];
-    w[s] = shells.residual_weight[first + s];
-    double basis[5] = {m[0], 0.5 * m[0] * m[0], 0, 0, 0};
-    if constexpr (D == 3) {
-      const double values[5] = {m[0], m[1], 0.5 * m[0] * m[0], 0.5 * m[1] * m[1], m[0] * m[1]};
-      std::copy(values, values + 5, basis);
-    }
-    for (std::int32_t p = 0; p < count; ++p)
-      for (int t = 0; t < terms<D>; ++t) a(s, p) -= basis[t] * shells.fit[static_cast<std::size_t>(first + p) * terms<D> + t];
-  }
-  return a.transpose() * w.asDiagonal() * a;
 }
 
 // Free components numbered; -1 where held.
@@ -76,23 +55,16 @@ template <int D>
 SparseMatrix tangent(const ShellElasticity<D>& shells, const std::vector<Padded<D>>& x, const std::vector<std::int32_t>& number,
                      std::int32_t unknowns) {
   std::vector<Eigen::Triplet<double>> entries;
-  std::vector<Padded<D>> pair_force(shells.neighbor.size());
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(shells.size()); ++i) {
     if (idle(shells, i)) continue;
     const Kinematics<D> k = kinematics(shells, x.data(), i);
-    const Padded<D> pull = residual_forces(shells, x.data(), i, k, pair_force.data());
-    const LocalHessian<D> hessian = local_hessian(shells, i, k, pull);
-    const Eigen::MatrixXd residual = residual_stiffness(shells, i);
+    const LocalHessian<D> hessian = local_hessian(shells, i, k);
     const std::int32_t first = shells.start[i], count = shells.start[i + 1] - first;
-    // Rows of the map from positions to terms: the neighbours' fits, and for i minus their sum. Likewise for the residual.
-    Eigen::MatrixXd map(terms<D>, count + 1), link(count + 1, count + 1);
+    // Rows of the map from positions to terms: the neighbours' fits, and for i minus their sum.
+    Eigen::MatrixXd map(terms<D>, count + 1);
     for (std::int32_t p = 0; p < count; ++p)
       for (int t = 0; t < terms<D>; ++t) map(t, p) = shells.fit[static_cast<std::size_t>(first + p) * terms<D> + t];
     map.col(count) = -map.leftCols(count).rowwise().sum();
-    link.topLeftCorner(count, count) = residual;
-    link.col(count).head(count) = -residual.rowwise().sum();
-    link.row(count).head(count) = -residual.colwise().sum();
-    link(count, count) = residual.sum();
     Eigen::MatrixXd half(terms<D> * D, (count + 1) * D);  // hessian * map
     for (std::int32_t q = 0; q <= count; ++q) {
       Eigen::Matrix<double, terms<D> * D, D> column = Eigen::Matrix<double, terms<D> * D, D>::Zero();
@@ -103,7 +75,7 @@ SparseMatrix tangent(const ShellElasticity<D>& shells, const std::vector<Padded<
       const std::int32_t row = p < count ? shells.neighbor[first + p] : i;
       for (std::int32_t q = 0; q <= count; ++q) {
         const std::int32_t column = q < count ? shells.neighbor[first + q] : i;
-        Tensor<D> block = Tensor<D>::Identity() * link(p, q);
+        Tensor<D> block = Tensor<D>::Zero();
         for (int t = 0; t < terms<D>; ++t) block += map(t, p) * half.template block<D, D>(t * D, q * D);
         for (int a = 0; a < D; ++a)
           for (int b = 0; b < D; ++b) {
@@ -142,8 +114,12 @@ template <int D>
 class Equilibrium {
  public:
   Equilibrium(const ShellElasticity<D>& shells, const ShellLoad<D>& load, std::span<Vector<D>> position)
-      : shells_(shells), load_(load), position_(position), number_(number_unknowns(shells, unknowns_)),
-        still_(shells.size(), Vector<D>::Zero()), force_(shells.size()) {}
+      : shells_(shells),
+        load_(load),
+        position_(position),
+        number_(number_unknowns(shells, unknowns_)),
+        still_(shells.size(), Vector<D>::Zero()),
+        force_(shells.size()) {}
 
   ShellStaticReport solve(double tolerance, int iterations);
 

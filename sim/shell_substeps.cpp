@@ -16,7 +16,7 @@ constexpr int chunk = 16;  // sub-steps between looks at how far the contact sea
 
 template <int D>
 struct Workspace {
-  std::vector<Padded<D>> x, v, next_x, next_v, own, pair_force, normal, mean;
+  std::vector<Padded<D>> x, v, next_x, next_v, own, normal, mean;
   std::vector<std::array<Padded<D>, terms<D>>> derivative;
   std::vector<std::uint8_t> limited;
 
@@ -24,7 +24,7 @@ struct Workspace {
       : x(shells.size()),
         v(shells.size()),
         own(shells.size()),
-        pair_force(shells.neighbor.size()),
+
         normal(shells.size()),
         mean(shells.size(), Padded<D>::Zero()),
         derivative(shells.size()),
@@ -45,7 +45,8 @@ struct Workspace {
 template <int D>
 void advance(const ShellElasticity<D>& shells, const Contact<D>* contact, const ShellSubstepInput<D>& input, Workspace<D>& work,
              std::int32_t i, double dt) {
-  Padded<D> force = work.own[i] + gather_force(shells, work.derivative.data(), work.pair_force.data(), i);
+  if (is_clamped(shells, i)) return;
+  Padded<D> force = work.own[i] + gather_force(shells, work.derivative.data(), i);
   if (contact) force += contact_kernel::gather_contact(*contact, i);
   work.mean[i] += force;
   const double mass = shells.mass[i], damping = shells.bodies[shells.body[i]].damping;
@@ -88,8 +89,7 @@ ShellSubstepReport shell_substeps(const ShellElasticity<D>& shells, Contact<D>* 
     for (int step = 0; step < count; ++step) {
 #pragma omp for schedule(static)
       for (std::int32_t i = 0; i < rows; ++i)
-        work.limited[i] |= differentiate_row(shells, work.x.data(), work.v.data(), i, work.derivative[i], work.pair_force.data(),
-                                             work.own[i], work.normal[i]);
+        work.limited[i] |= differentiate_row(shells, work.x.data(), work.v.data(), i, work.derivative[i], work.own[i], work.normal[i]);
       if (contact_rows > 0) {
 #pragma omp for schedule(static)
         for (std::int32_t r = 0; r < contact_rows; ++r)
