@@ -134,6 +134,7 @@ struct Frame {
   std::string title;                                                          // top left: the case's label, never a patient's name
   std::string subtitle;                                                       // beneath it: the settings that matter
   std::optional<double> time;                                                 // s, top right; also the cursor of the plots
+  std::string time_text;                                                      // written instead of the time where given: "load 0.50"
   std::vector<std::string> readouts;                                          // beneath the time: "LV 12.3 kPa (92 mmHg)"
   std::vector<std::string> warnings;                                          // bottom left, marked
   std::string caption = "For planning research, not for clinical decisions";  // bottom right

@@ -287,11 +287,9 @@ void draw_header(Image& image, const Rect& place, const Frame& frame, Lettering&
   const float em = as_float(lettering.size), right = as_float(place.x + place.width) - em;
   lettering.bold.draw(image, em, 1.45f * em, lettering.size * 11 / 10, frame.title, ink);
   lettering.regular.draw(image, em, 2.7f * em, lettering.size * 85 / 100, frame.subtitle, faint);
-  if (frame.time) {
-    const Ticks precision = round_ticks(0, std::max(std::abs(*frame.time), 1e-3), 1);
-    lettering.bold.draw(image, right, 1.45f * em, lettering.size * 11 / 10,
-                        "t = " + number_text(*frame.time, std::max(3, precision.decimals)) + " s", ink, Align::right);
-  }
+  std::string time = frame.time_text;
+  if (time.empty() && frame.time) time = "t = " + number_text(*frame.time, 3) + " s";
+  lettering.bold.draw(image, right, 1.45f * em, lettering.size * 11 / 10, time, ink, Align::right);
   std::string readouts;
   for (const std::string& readout : frame.readouts) readouts += (readouts.empty() ? "" : "    ") + readout;
   lettering.regular.draw(image, right, 2.7f * em, lettering.size * 85 / 100, readouts, ink, Align::right);
