@@ -124,7 +124,8 @@ struct Port {
   PortCondition condition = PortCondition::pressure;
   TimeTable table;                         // Pa, m/s (inward positive), m³/s (inward positive)
   Windkessel windkessel;
-  double impedance = 0;                    // Pa s/m: characteristic impedance rho c; pressure = table - impedance * inflow speed
+  double impedance = 0;                    // Pa s/m: characteristic impedance rho c of the vessel beyond, against fast changes of flow only:
+                                           // pressure = table - impedance * (inflow speed - its mean over the last 0.03 s)
   double start_speed = 0;                  // m/s inward, initial speed of the port's particles
 };
 
@@ -155,7 +156,9 @@ struct SchemeSettings {                    // every numerical knob; lengths in u
   double shifting = 0.6;                   // largest strength A of particle shifting; 0 = off
   double subparticle_dissipation = 0.1;    // C of the dissipation for unresolved scales; 0 = off
   double viscosity_limit = 1000;           // Pa s, cap of the rheological viscosity
+  double added_mass = 1.0;                 // of rho l0 per leaflet area: the blood's inertia that elastic sub-steps feel along the normal; stable in about [0.5, 2]
   double elastic_substep = 0.35;           // of l0/c; explicit elastic sub-steps; refused above 0.5
+  int elastic_explicit_limit = 200;        // solids: more explicit sub-steps than this in a step, and they are advanced implicitly
   double elastic_tolerance = 1e-8;         // relative residual of implicit and static elastic solves
   int outer_iterations = 100;
   bool literal_weight = false;             // paper: w = r_e/r as printed, with the literal density source (an exhibit)
