@@ -22,6 +22,7 @@ struct Attempt {
   bool three_lobes = false;  // passed the deciding test
   double order = 0;          // D_annulus / D_junction: smaller is the better direction
   double sinus_diameter = 0, junction_diameter = 0, prominence = 0;
+  std::optional<PlaneOverride> likely_annulus;
   std::string why;
 };
 
@@ -141,6 +142,17 @@ std::string settle_junction(const TriangleMesh& lumen, const RootOptions& option
   return "";
 }
 
+// Where a vessel cut off through its sinuses would have had its annulus: the plane below them in which it has closed to 0.75 of their
+// width.
+std::optional<PlaneOverride> guess_annulus(const TriangleMesh& lumen, const Working& work) {
+  for (double below = 0.2; below < 0.9; below += 0.02) {
+    const Section section = section_around(lumen, work.axis.at(0, 0, work.z_sinus - below * work.diameter), work.axis.direction);
+    if (section.contour.empty()) break;
+    if (section.diameter() < 0.75 * work.diameter) return PlaneOverride{section.center, work.axis.direction};
+  }
+  return std::nullopt;
+}
+
 std::string settle_annulus(const TriangleMesh& lumen, const TriangleTree& tree, const RootOptions& options, Working& work) {
   AorticRoot& root = work.root;
   int resolved = 0;
@@ -186,6 +198,9 @@ void place_nadirs(const TriangleTree& tree, Working& work) {
 
 // Why a found root cannot be one; "" where nothing speaks against it. What the user gave is not doubted.
 std::string doubts_about(const Working& work, const RootOptions& options) {
+  const double narrowing = work.root.sinotubular_junction.mean_diameter / work.root.sinuses.mean_diameter;
+  if (!options.sinotubular_junction && (narrowing < 0.6 || narrowing > 0.99))
+    return "the sinotubular junction is unresolved: the vessel ends or goes on too wide above the sinuses; give its plane";
   if (options.annulus || options.nadirs) return "";
   const RootPlane &annulus = work.root.annulus, &sinuses = work.root.sinuses;
   const double share = annulus.mean_diameter / sinuses.mean_diameter;
@@ -198,6 +213,8 @@ std::string doubts_about(const Working& work, const RootOptions& options) {
                   1e3 * annulus.mean_diameter, 1e3 * sinuses.mean_diameter);
     return text;
   }
+  if (!options.sinotubular_junction && annulus.mean_diameter > 1.3 * work.root.sinotubular_junction.mean_diameter)
+    return "the annulus is unresolved: it would be wider than the junction by a third";
   if (tilt > 35) {
     std::snprintf(text, sizeof text, "the annulus is unresolved: the plane through the sinuses' nadirs leans by %.0f degrees", tilt);
     return text;
@@ -233,7 +250,10 @@ Attempt settle_root(const TriangleMesh& lumen, const TriangleTree& tree, const C
       return attempt;
     }
     attempt.why = settle_annulus(lumen, tree, options, work);
-    if (!attempt.why.empty()) return attempt;
+    if (!attempt.why.empty()) {
+      attempt.likely_annulus = guess_annulus(lumen, work);
+      return attempt;
+    }
     renew_axis(lumen, work);
   }
   if (options.annulus && !options.nadirs) place_nadirs(tree, work);
@@ -286,6 +306,7 @@ RootSearch find_aortic_root(const TriangleMesh& lumen, const std::vector<Centrel
     if (attempt.three_lobes && (best == nullptr || attempt.prominence > best->prominence)) best = &attempt;
   if (best != nullptr) {
     search.centreline = best->line;
+    search.likely_annulus = best->likely_annulus;
     char text[160];
     std::snprintf(text, sizeof text, "three sinuses found (%.1f mm wide, junction %.1f mm), but ", 1e3 * best->sinus_diameter,
                   1e3 * best->junction_diameter);

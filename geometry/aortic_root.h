@@ -50,7 +50,8 @@ struct RootSearch {
   std::optional<AorticRoot> root;
   std::string reason;  // why there is none; names what is unresolved and how the user can settle it
   std::vector<std::string> warnings;
-  Centreline centreline;  // ventricle -> aorta through the root, where one was found
+  std::optional<PlaneOverride> likely_annulus;  // sinuses found but no outflow tract: a guess to build on, not a finding
+  Centreline centreline;                        // ventricle -> aorta through the root, where one was found
 };
 
 // The mesh is closed and oriented outward, metres. `centreline` candidates run between the lumen's ends.

@@ -248,10 +248,11 @@ CutDomain cut_domain(const TriangleMesh& lumen, const Centreline& centreline, co
     throw std::runtime_error("the centreline does not run from the annulus to the sinotubular junction; check the root's planes");
   const double scale = std::clamp(root.annulus.mean_diameter / 0.023, 0.3, 1.3);  // an adult's lengths, for a child's root
   const double root_area = root.annulus.mean_diameter * root.annulus.mean_diameter * std::numbers::pi / 4;
+  const double junction_area = root.sinotubular_junction.mean_diameter * root.sinotubular_junction.mean_diameter * std::numbers::pi / 4;
   const Cut lower = choose_cut(lumen, centreline, annulus_arc - scale * options.below_annulus_min,
                                annulus_arc - scale * options.below_annulus_max, -1, 0.6 * root_area);
   const Cut upper = choose_cut(lumen, centreline, junction_arc + scale * options.above_junction_min,
-                               junction_arc + scale * options.above_junction_max, +1, 0.0);
+                               junction_arc + scale * options.above_junction_max, +1, 0.5 * junction_area);
   CutDomain domain;
   domain.surface = cut_off(cut_off(lumen, lower, root.sinuses.center), upper, root.sinuses.center);
   for (const auto& [cut, name] : {std::pair{lower, "ventricle"}, std::pair{upper, "aorta"}}) {

@@ -49,17 +49,25 @@ std::vector<std::int32_t> grow_plane(const TriangleMesh& mesh, const FaceGraph& 
   std::vector<std::int32_t> region{seed};
   owner[std::size_t(seed)] = seed;
   Vector3d normal = graph.normal[std::size_t(seed)], weighted = normal * graph.area[std::size_t(seed)];
+  const Vector3d anchor = mesh.vertices[std::size_t(mesh.triangles[std::size_t(seed)][0])];
+  // A sliver's normal is round-off: it belongs to the plane when its corners do.
+  auto lies_in_plane = [&](std::int32_t t, double tolerance) {
+    const auto& corners = mesh.triangles[std::size_t(t)];
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](std::int32_t v) { return std::abs((mesh.vertices[std::size_t(v)] - anchor).dot(normal)) < tolerance; });
+  };
   for (std::size_t i = 0; i < region.size(); ++i)
     for (std::int32_t next : graph.neighbour[std::size_t(region[i])]) {
       if (next < 0 || owner[std::size_t(next)] >= 0) continue;
-      const bool sliver = graph.area[std::size_t(next)] < 1e-3 * graph.area[std::size_t(seed)];
-      if (!sliver && graph.normal[std::size_t(next)].dot(normal) < cosine) continue;
+      const bool along = graph.normal[std::size_t(next)].dot(normal) >= cosine;
+      const bool sliver = graph.area[std::size_t(next)] < 1e-2 * graph.area[std::size_t(seed)] &&
+                          lies_in_plane(next, 1e-3 * std::sqrt(graph.area[std::size_t(seed)]));
+      if (!along && !sliver) continue;
       owner[std::size_t(next)] = seed;
       region.push_back(next);
       weighted += graph.normal[std::size_t(next)] * graph.area[std::size_t(next)];
       normal = weighted.normalized();
     }
-  (void)mesh;
   return region;
 }
 

@@ -181,6 +181,16 @@ void find_root(const LumenField& field, const ImportOptions& options, ImportResu
   if (wide.size() > 5) wide.resize(5);
   const std::vector<Centreline> lines = candidate_lines(field, end_points(field, wide));
   RootSearch search = find_aortic_root(result.lumen, lines, options.root);
+  if (!search.root && options.build_root && search.likely_annulus) {
+    RootOptions guess = options.root;
+    guess.annulus = search.likely_annulus;
+    RootSearch again = find_aortic_root(result.lumen, {search.centreline}, guess);
+    if (again.root) {
+      again.root->built = true;
+      again.warnings.push_back("the sinuses and the junction are found, the annulus is built: the mesh has no outflow tract");
+      search = std::move(again);
+    }
+  }
   if (!search.root && options.build_root) {
     Centreline line = search.centreline;
     if (line.size() < 4 && wide.size() >= 2) line = trace_centreline(field, wide[0].center, wide[1].center);
