@@ -57,6 +57,8 @@ int relax_membrane(const MembraneProblem& problem, std::vector<Vector3d>& positi
     mass[t[1]] += 3 * modulus * rest.back().area * g1.squaredNorm();
     mass[t[2]] += 3 * modulus * rest.back().area * g2.squaredNorm();
   }
+  for (const auto& line : problem.lines)
+    for (auto node : line) mass[node] += 8 * problem.bending;
   std::vector<Vector3d> velocity(nodes, Vector3d::Zero()), force(nodes);
   double last_energy = 0;
   for (int iteration = 0; iteration < problem.iterations; ++iteration) {
@@ -73,6 +75,12 @@ int relax_membrane(const MembraneProblem& problem, std::vector<Vector3d>& positi
       force[t[1]] += pull.col(0) + push;
       force[t[2]] += pull.col(1) + push;
       force[t[0]] += push - pull.col(0) - pull.col(1);
+    }
+    for (const auto& [a, middle, b] : problem.lines) {
+      const Vector3d pull = problem.bending * (position[a] - 2 * position[middle] + position[b]);
+      force[a] -= pull;
+      force[middle] += 2 * pull;
+      force[b] -= pull;
     }
     double energy = 0, farthest = 0;
     for (std::size_t i = 0; i < nodes; ++i) {

@@ -15,7 +15,10 @@ struct MembraneProblem {
   std::vector<std::uint8_t> fixed;                     // a node: 1 stays
   double tension_modulus = 1000;                       // E t, N/m
   double poisson_ratio = 0.45;
-  double compression_share = 0.03;                // of the stiffness that is left under compression (wrinkling)
+  double compression_share = 0.03;  // of the stiffness that is left under compression (wrinkling)
+  // Against crumpling: a spring of `bending` N/m on the second difference of three nodes in line (a, middle, b).
+  std::vector<std::array<std::int32_t, 3>> lines;
+  double bending = 0;
   double pressure = 0;                            // Pa
   std::function<void(Eigen::Vector3d&)> confine;  // puts a node back to where it may be
   int iterations = 6000;

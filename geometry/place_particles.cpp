@@ -48,8 +48,8 @@ struct Fixed {
   std::vector<double> volume;
 };
 
-// Each obstacle swallows the nearest fluid particles until they make up its volume.
-void give_up_volume(Draft& draft, const std::vector<PlacedBody>& bodies, const PlacementOptions& options) {
+// Each obstacle swallows the nearest particles, blood or wall, until they make up its volume.
+void give_up_volume(Draft& draft, const PlacementOptions& options) {
   if (options.obstacle_position.empty()) return;
   const PointGrid grid(draft.position, 2.5 * options.spacing);
   std::vector<std::uint8_t> gone(draft.position.size(), 0);
@@ -57,15 +57,15 @@ void give_up_volume(Draft& draft, const std::vector<PlacedBody>& bodies, const P
   for (std::size_t o = 0; o < options.obstacle_position.size(); ++o) {
     std::size_t nearest = draft.position.size();
     double best = 1e300;
-    bool in_fluid = false;
+    bool inside = false;
     grid.for_each_near(options.obstacle_position[o], [&](std::size_t i, const Vector3d&, double d2) {
-      if (draft.body[i] == no_body || bodies[draft.body[i]].matter != Matter::fluid) return;
-      in_fluid |= d2 < options.spacing * options.spacing;
+      if (draft.body[i] == no_body) return;
+      inside |= d2 < options.spacing * options.spacing;
       if (gone[i] || d2 >= best) return;
       best = d2;
       nearest = i;
     });
-    if (!in_fluid) continue;
+    if (!inside) continue;
     debt += options.obstacle_volume[o];
     if (nearest == draft.position.size() || debt < 0.5 * draft.volume[nearest]) continue;
     gone[nearest] = 1;
@@ -266,7 +266,7 @@ void place_fluid_and_walls(const std::vector<PlacedBody>& bodies, const Placemen
     if (!is_rectilinear(bodies[m].shape, options.dimension)) balance_volume(cells, bodies, members, m, volume[m], options);
   }
   Draft draft = draft_particles(cells, cells_to_relax(cells, bodies, options));
-  give_up_volume(draft, bodies, options);
+  give_up_volume(draft, options);
   const std::size_t moving = std::count(draft.mobile.begin(), draft.mobile.end(), 1);
   if (moving > 0) {
     Fixed fixed{options.obstacle_position, options.obstacle_volume};

@@ -41,7 +41,7 @@ struct PlacementOptions {
   int relaxation_sweeps = 60;
   // Wall particles deeper than this below the exposed surface are left out (m; infinite = keep the wall as given).
   double wall_depth_limit = std::numeric_limits<double>::infinity();
-  // Particles placed beforehand (a valve's leaflets): fluid keeps off them, and gives up their volume. Positions m, volumes m³.
+  // Particles placed beforehand (a valve's leaflets): fluid and walls keep off them, and give up their volume. Positions m, volumes m³.
   std::vector<Eigen::Vector3d> obstacle_position;
   std::vector<double> obstacle_volume;
   double obstacle_clearance = 0.7;  // in l0: no fluid or wall centre nearer to an obstacle

@@ -16,6 +16,7 @@ struct ValveCaseOptions {
   double leaflet_spacing = 0.8;  // in l0
   int embedded_rows = 2;
   std::int64_t particle_limit = 5'000'000;
+  bool measure_leak = true;  // costs a second or two
 };
 
 struct ValveCase {
