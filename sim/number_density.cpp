@@ -61,7 +61,8 @@ void find_free_surface(const Scene<D>& scene, const State<D>& state, Workspace<D
     }
     const double size = directions.norm();
     const bool sparse = work.number_density[i] < 0.5;
-    if (!sparse && (size < 0.12 * scene.lattice.number_density || covered<D>(scene, state, work, i, directions / size))) continue;
+    const bool open = work.number_density[i] < 0.8 && size > 0.2 * scene.lattice.number_density;
+    if (!sparse && !open && (size < 0.12 * scene.lattice.number_density || covered<D>(scene, state, work, i, directions / size))) continue;
     work.surface[i] = 1;
     if (size > 0) work.surface_outward[i] = std::max(moment.dot(directions) / size, 0.0) / size * directions;
   }

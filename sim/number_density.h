@@ -14,8 +14,9 @@ void link_weights(const Scene<D>& scene, const State<D>& state, Workspace<D>& wo
 template <int D>
 void particle_number_density(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
 
-// Surface particles: n < 0.97 n0, |sum w r/|r|| > 0.12 n0 and nothing ahead within 1.8 l0 and 45 degrees, or n < 0.5 n0 (numerics-fluid
-// 4(ii)2 with a cone test, so that only the outermost layer is surface for any kernel radius). 2 = has a surface neighbour.
+// Surface particles: n < 0.97 n0, |sum w r/|r|| > 0.12 n0 and nothing ahead within 1.8 l0 and 45 degrees (numerics-fluid 4(ii)2 with a cone
+// test, so that only the outermost layer is surface for any kernel radius); or n < 0.8 n0 and |sum w r/|r|| > 0.2 n0 whatever lies ahead (a
+// contact line has the wall there); or n < 0.5 n0. 2 = has a surface neighbour.
 template <int D>
 void find_free_surface(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
 

@@ -2,6 +2,8 @@
 
 #include <Eigen/Dense>
 
+#include "sim/rheology.h"
+
 namespace sim {
 using Index = std::ptrdiff_t;
 
@@ -56,20 +58,32 @@ void moment_matrices(const Scene<D>& scene, const State<D>& state, Workspace<D>&
       const double missing = scene.lattice.number_density * std::max(1 - work.number_density[i], 0.0);
       if (ahead > 0) fluid += 0.25 * factor * missing / (ahead * ahead) * work.surface_outward[i] * work.surface_outward[i].transpose();
     }
-    work.pressure_inverse[i] = isolated ? Tensor<D>::Identity().eval() : floored_inverse<D>(fluid, 0.3);
+    work.pressure_inverse[i] = isolated ? Tensor<D>::Identity().eval() : floored_inverse<D>(fluid, 0.1);
   }
 }
+
+namespace {
+
+// mu/rho of a fluid body at a shear rate, m²/s.
+template <int D>
+double kinematic_viscosity(const Scene<D>& scene, std::int32_t body, double rate) {
+  return viscosity(scene.description.bodies[body].fluid.rheology, rate, scene.description.scheme.viscosity_limit) / scene.density[body];
+}
+
+}  // namespace
 
 template <int D>
 void velocity_gradients(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
   const Index n = static_cast<Index>(state.size());
   work.velocity_gradient.resize(n);
+  const double l0 = scene.lattice.spacing;
   const double factor = scene.lattice.gradient_factor();
   const double least = scene.lattice.closest() * scene.lattice.closest();
-  const bool slip = !scene.viscosity.has_value();
+  constexpr double resolved_cell = 20;  // -, cell Reynolds number up to which a boundary layer of one spacing is resolved
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index i = scene.first_fluid; i < n; ++i) {
     Tensor<D> sum = Tensor<D>::Zero();
+    double kinematic = -1;  // m²/s, at the rate that a wall one spacing away would cause; asked for only beside a boundary
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
       const double w = work.link_weight[k];
       if (w == 0) continue;
@@ -82,7 +96,11 @@ void velocity_gradients(const Scene<D>& scene, const State<D>& state, Workspace<
         const Vector<D>& normal = work.boundary_normal[j];
         const double t = fluid_fraction<D>(r, normal, scene.description.particles.depth[j]);
         Vector<D> jump = work.boundary_velocity[j] - state.velocity[i];
-        if (slip) jump = jump.dot(normal) * normal;
+        const Vector<D> slip = jump - jump.dot(normal) * normal;
+        const double speed = slip.norm();
+        if (kinematic < 0) kinematic = kinematic_viscosity(scene, state.body[i], speed / l0);
+        const double cell = speed * l0;
+        if (cell > resolved_cell * kinematic) jump -= (1 - resolved_cell * kinematic / cell) * slip;
         sum.noalias() += c / t * jump * r.transpose();
       }
     }

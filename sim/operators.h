@@ -10,12 +10,14 @@ namespace sim {
 
 // The part of the way from a fluid particle to a boundary particle that lies in the fluid: 1 for a shell (its particles lie on the
 // surface), d_f / (d_f + d_b) for a wall or solid of which the particle lies d_b below the true surface. r: from fluid to boundary
-// particle; normal: unit, into the fluid. Never below 0.2, so that a fluid particle on the surface keeps a finite sample.
+// particle; normal: unit, into the fluid. Seen from behind the surface's plane (round a corner, or the far face of a thin wall) the surface
+// is taken to be d_b away in the direction of the fluid particle. Never below 0.2, so that a fluid particle on the surface keeps a finite
+// sample.
 template <int D>
 double fluid_fraction(const Vector<D>& r, const Vector<D>& normal, double depth) {
   if (depth <= 0) return 1;
-  const double across = std::max(-r.dot(normal), 1e-12);
-  return std::clamp(1.0 - depth / across, 0.2, 1.0);
+  const double across = -r.dot(normal);
+  return std::clamp(1.0 - depth / (across > depth ? across : std::max(r.norm(), 1e-12)), 0.2, 1.0);
 }
 
 // Whether the port gives its pressure (else its speed).
@@ -38,8 +40,10 @@ double port_fraction(const Port<D>& port, const Vector<D>& x_i, const Vector<D>&
 template <int D>
 void moment_matrices(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
 
-// grad v at every fluid particle from the current velocities; on the boundary v is the surface's own (no slip), or, for inviscid fluid,
-// only its normal part. The trace is the divergence of Eq (17), exact for linear fields.
+// grad v at every fluid particle from the current velocities; on the boundary v is the surface's own. Where the boundary layer is thinner
+// than a spacing (cell Reynolds number rho |v_t| l0 / mu of the slip above 20) the tangential jump counts in the ratio 20/Re, in an
+// inviscid fluid not at all: a layer that the particles cannot resolve would else appear as divergence. The trace is the divergence of
+// Eq (17), exact for linear fields.
 template <int D>
 void velocity_gradients(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
 
