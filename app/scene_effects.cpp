@@ -154,8 +154,8 @@ std::vector<ReferenceSpec> read_references(const toml::table& table, const Scene
   std::vector<ReferenceSpec> result;
   for (const auto& [key, value] : table) {
     const std::string name(key.str()), path = "reference." + name;
-    std::vector<std::string> known{"value", "x",  "y",  "z",  "von_mises", "principal1", "principal2", "principal3",  "xx",   "yy",
-                                   "zz",    "xy", "yz", "xz", "table",     "time",       "source",     "uncertainty", "limit"};
+    std::vector<std::string> known{"value", "x",  "y",  "z",  "von_mises", "principal1", "principal2", "principal3",  "xx",    "yy",
+                                   "zz",    "xy", "yz", "xz", "table",     "time",       "source",     "uncertainty", "limit", "component"};
     const TableReader reader(names.table(name), path, known);
     ReferenceSpec reference;
     reference.spot = reader.spot();
@@ -163,6 +163,7 @@ std::vector<ReferenceSpec> read_references(const toml::table& table, const Scene
     for (std::size_t i = 0; i < 14; ++i)
       if (reader.has(known[i])) reference.values.emplace_back(i == 0 ? "" : known[i], reader.number(known[i]));
     if (reader.has("table")) reference.table = existing_file(reader, "table", context);
+    reference.component = reader.text("component", "");
     if (reference.values.empty() == reference.table.empty())
       refuse(reader.spot(), "says nothing to compare with", "give value, or x/y/z, or a table of the probe's columns");
     if (reader.has("time")) reference.time = reader.number("time", not_negative);

@@ -243,8 +243,9 @@ sim::SchemeSettings read_scheme(const toml::table& table) {
       {"subparticle_dissipation", &S::subparticle_dissipation, {0, 10, false, false, "0 (off) to 10"}},
       {"viscosity_limit", &S::viscosity_limit, positive},
       {"elastic_substep", &S::elastic_substep, {0, 0.5, true, false, "a number above 0, at most 0.5"}},
+      {"added_mass", &S::added_mass, {0, 10, false, false, "0 to 10"}},
       {"elastic_tolerance", &S::elastic_tolerance, {0, 0.1, true, false, "a number above 0, at most 0.1"}}};
-  std::vector<std::string> known{"name", "pressure_iterations", "outer_iterations", "literal_weight"};
+  std::vector<std::string> known{"name", "pressure_iterations", "outer_iterations", "elastic_explicit_limit", "literal_weight"};
   for (const Knob& knob : knobs) known.push_back(knob.key);
   const TableReader reader(table, "scheme", known);
   S scheme;
@@ -254,6 +255,7 @@ sim::SchemeSettings read_scheme(const toml::table& table) {
   const Range counts{1, 1e6, false, false, "a whole number from 1"};
   scheme.pressure_iterations = static_cast<int>(reader.integer("pressure_iterations", counts, scheme.pressure_iterations));
   scheme.outer_iterations = static_cast<int>(reader.integer("outer_iterations", counts, scheme.outer_iterations));
+  scheme.elastic_explicit_limit = static_cast<int>(reader.integer("elastic_explicit_limit", counts, scheme.elastic_explicit_limit));
   scheme.literal_weight = reader.flag("literal_weight", false);
   if (scheme.literal_weight && scheme.name != sim::Scheme::paper)
     refuse(reader.spot("literal_weight"), "belongs to the paper's scheme", "set scheme.name = \"paper\"");

@@ -89,6 +89,7 @@ struct ReferenceSpec {
   Spot spot;
   std::string probe;                                   // name of the probe
   std::vector<std::pair<std::string, double>> values;  // component ("" for a scalar, "x", "von_mises"...) and value
+  std::string component;                               // of a table: "x", "von_mises"... ("" for a scalar)
   std::filesystem::path table;                         // or a table, absolute
   std::optional<double> time;                          // s; absent = the end
   std::string source;

@@ -219,7 +219,8 @@ void apply_multigrid(Multigrid& mg, std::span<const double> r, std::span<double>
 }
 
 SolveReport conjugate_gradient(const SymmetricMatrix& matrix, std::span<const double> b, std::span<double> x, double tolerance,
-                               int max_iterations, Multigrid* multigrid, ConjugateGradientScratch& s) {
+                               int max_iterations, Multigrid* multigrid, ConjugateGradientScratch& s,
+                               const std::function<void(std::span<const double>, std::span<double>)>& add_to_product) {
   const std::size_t n = matrix.rows();
   s.r.resize(n), s.z.resize(n), s.p.resize(n), s.q.resize(n);
   SolveReport report;
@@ -234,6 +235,7 @@ SolveReport conjugate_gradient(const SymmetricMatrix& matrix, std::span<const do
     for (std::size_t i = 0; i < n; ++i) s.z[i] = matrix.diagonal[i] > 0 ? s.r[i] / matrix.diagonal[i] : 0;
   };
   multiply(matrix, x, s.q);
+  if (add_to_product) add_to_product(x, s.q);
   for (std::size_t i = 0; i < n; ++i) s.r[i] = b[i] - s.q[i];
   double norm_r = std::sqrt(dot(s.r, s.r));
   double rho_old = 0;
@@ -243,6 +245,7 @@ SolveReport conjugate_gradient(const SymmetricMatrix& matrix, std::span<const do
     const double beta = report.iterations == 0 ? 0 : rho / rho_old;
     for (std::size_t i = 0; i < n; ++i) s.p[i] = s.z[i] + beta * s.p[i];
     multiply(matrix, s.p, s.q);
+    if (add_to_product) add_to_product(s.p, s.q);
     const double curvature = dot(s.p, s.q);
     if (!(curvature > 0) || !(rho > 0)) break;
     const double alpha = rho / curvature;

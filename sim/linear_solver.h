@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -51,7 +52,9 @@ struct ConjugateGradientScratch {
 };
 
 // Solves A x = b to |r| <= tolerance |b| from the guess in x. With `multigrid` null the preconditioner is Jacobi.
+// add_to_product(x, y) adds a further symmetric positive semi-definite operator: y += B x.
 SolveReport conjugate_gradient(const SymmetricMatrix& matrix, std::span<const double> b, std::span<double> x, double tolerance,
-                               int max_iterations, Multigrid* multigrid, ConjugateGradientScratch& scratch);
+                               int max_iterations, Multigrid* multigrid, ConjugateGradientScratch& scratch,
+                               const std::function<void(std::span<const double>, std::span<double>)>& add_to_product = {});
 
 }  // namespace sim

@@ -20,6 +20,7 @@ enum class Kind : std::uint8_t { elastic = 0, shell = 1, wall = 2, fluid = 3, po
 struct Ledger {
   std::int64_t particles_in = 0, particles_out = 0, particles_lost = 0;
   std::int64_t penetrations = 0;           // fluid particles found behind a leaflet or wall and put back
+  std::int64_t sheet_crossings = 0;        // of these, through a leaflet
   double deepest_penetration = 0;          // m
   std::int64_t refused_steps = 0, limiter_hits = 0, pressure_iterations = 0, elastic_substeps = 0;
   double kinetic_energy = 0, elastic_energy = 0, viscous_loss = 0, port_work = 0, load_work = 0;  // J (2-D: J per metre of depth)
@@ -50,7 +51,7 @@ struct State {
   // Rows of shells only, relative to the first shell row: pressures on the side its normal points to, and on the other. Pa
   std::vector<double> pressure_plus, pressure_minus;
 
-  std::vector<double> port_memory;         // per port: Windkessel pressure Pa (0 where there is none)
+  std::vector<double> port_memory;         // per port: Windkessel pressure, Pa; with a given pressure the slow inflow speed, m/s
   std::vector<double> port_flow;           // per port: volume flow in the last step, m³/s, inward positive
   std::vector<double> port_volume;         // per port: volume that came in so far, m³
   Ledger ledger;

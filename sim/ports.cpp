@@ -1,11 +1,13 @@
 #include "sim/ports.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sim {
 namespace {
 
-constexpr double layers = 3;  // port particles reach this many l0 out of the plane
+constexpr double impedance_memory = 0.03;  // s: flow that lasts longer is part of the given pressure, what is faster meets the impedance
+constexpr double layers = 3;               // port particles reach this many l0 out of the plane
 
 // Height outside the port's plane (m, positive outside), or a large number where x lies beside the opening.
 template <int D>
@@ -90,14 +92,43 @@ void open_ports(const Scene<D>& scene, State<D>& state) {
                               -port.start_speed * port.normal, 0);
     }
   }
-  prescribe_ports(scene, state, 0);
+  prescribe_ports<D>(scene, state, nullptr, 0);
 }
 
+namespace {
+
+// Speed of each particle of a port whose pressure is given: the blood's own beside it, layer by layer outward, along the port's normal and
+// never against the mean flow. `sheet` holds the port's rows by increasing height.
 template <int D>
-void prescribe_ports(const Scene<D>& scene, State<D>& state, double time) {
+void extrapolate_speed(const Scene<D>& scene, State<D>& state, const Workspace<D>& work, const Port<D>& port, double mean,
+                       const std::vector<std::pair<double, std::size_t>>& sheet) {
+  for (const auto& [height, i] : sheet) {
+    double sum = 0, weights = 0;
+    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+      const auto j = static_cast<std::size_t>(work.neighbors.index[k]);
+      if (state.kind[j] != Kind::fluid && (state.kind[j] != Kind::port || state.port[j] != state.port[i])) continue;
+      if ((state.position[j] - port.point).dot(port.normal) >= height) continue;
+      sum -= work.link_weight[k] * state.velocity[j].dot(port.normal);
+      weights += work.link_weight[k];
+    }
+    double speed = weights > 0 ? sum / weights : mean;
+    if (speed * mean < 0) speed = 0;
+    state.velocity[i] = -speed * port.normal;
+  }
+}
+
+}  // namespace
+
+template <int D>
+void prescribe_ports(const Scene<D>& scene, State<D>& state, const Workspace<D>* work, double time) {
   for (std::size_t p = 0; p < scene.description.ports.size(); ++p) {
     const Port<D>& port = scene.description.ports[p];
+    std::vector<std::pair<double, std::size_t>> sheet;
+    for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i)
+      if (state.port[i] == static_cast<std::int32_t>(p)) sheet.emplace_back((state.position[i] - port.point).dot(port.normal), i);
+    std::sort(sheet.begin(), sheet.end());
     double speed = 0, pressure = 0;
+    bool local = false;
     switch (port.condition) {
       case PortCondition::velocity:
         speed = port.table.at(time);
@@ -109,18 +140,20 @@ void prescribe_ports(const Scene<D>& scene, State<D>& state, double time) {
       }
       case PortCondition::pressure:
         speed = speed_inside(scene, state, port);
-        pressure = port.table.at(time) - port.impedance * speed;
+        pressure = port.table.at(time) - port.impedance * (speed - state.port_memory[p]);
+        local = work != nullptr;
         break;
       case PortCondition::windkessel:
         speed = speed_inside(scene, state, port);
         pressure = state.port_memory[p] - port.windkessel.proximal_resistance * state.port_flow[p];
+        local = work != nullptr;
         break;
     }
-    for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i)
-      if (state.port[i] == static_cast<std::int32_t>(p)) {
-        state.velocity[i] = -speed * port.normal;
-        state.pressure[i] = pressure;
-      }
+    for (const auto& [height, i] : sheet) {
+      state.velocity[i] = -speed * port.normal;
+      state.pressure[i] = pressure;
+    }
+    if (local) extrapolate_speed(scene, state, *work, port, speed, sheet);
   }
 }
 
@@ -139,7 +172,7 @@ void exchange_through_ports(const Scene<D>& scene, State<D>& state, double dt) {
     for (std::size_t i = first; i < before; ++i)
       if (state.port[i] == static_cast<std::int32_t>(p)) sheet.push_back(i);
     for (std::size_t i : sheet) {
-      speed = -state.velocity[i].dot(port.normal);
+      speed -= state.velocity[i].dot(port.normal) / static_cast<double>(sheet.size());
       sheet_pressure = state.pressure[i];
       any = true;
     }
@@ -148,6 +181,7 @@ void exchange_through_ports(const Scene<D>& scene, State<D>& state, double dt) {
       state.port_flow[p] = flow;
       state.port_volume[p] += flow * dt;
       state.ledger.port_work += sheet_pressure * flow * dt;
+      if (port.condition == PortCondition::pressure) state.port_memory[p] += dt / (dt + impedance_memory) * (speed - state.port_memory[p]);
       if (port.condition == PortCondition::windkessel) {
         const Windkessel& w = port.windkessel;  // C dP/dt = -q - P/R_d with q the flow into the blood
         state.port_memory[p] += dt * (-flow - state.port_memory[p] / w.distal_resistance) / w.compliance;
@@ -201,10 +235,10 @@ void remove_escaped(const Scene<D>& scene, State<D>& state) {
   if (any) keep_rows(state, first, keep);
 }
 
-#define INSTANTIATE(D)                                                      \
-  template void open_ports(const Scene<D>&, State<D>&);                     \
-  template void prescribe_ports(const Scene<D>&, State<D>&, double);        \
-  template void exchange_through_ports(const Scene<D>&, State<D>&, double); \
+#define INSTANTIATE(D)                                                                    \
+  template void open_ports(const Scene<D>&, State<D>&);                                   \
+  template void prescribe_ports(const Scene<D>&, State<D>&, const Workspace<D>*, double); \
+  template void exchange_through_ports(const Scene<D>&, State<D>&, double);               \
   template void remove_escaped(const Scene<D>&, State<D>&);
 INSTANTIATE(2)
 INSTANTIATE(3)

@@ -12,9 +12,10 @@ template <int D>
 void open_ports(const Scene<D>& scene, State<D>& state);
 
 // Pressure (Pa) and speed (m/s, inward) of every port at a time; Windkessel ports from their memory. Sets the port particles' pressure and
-// velocity: with a given pressure the speed is the blood's own mean beside the port (the layers move as one sheet).
+// velocity: with a given pressure the speed is the blood's own beside the port, extrapolated outward along its normal (without `work`,
+// which holds the neighbours, its mean).
 template <int D>
-void prescribe_ports(const Scene<D>& scene, State<D>& state, double time);
+void prescribe_ports(const Scene<D>& scene, State<D>& state, const Workspace<D>* work, double time);
 
 // After the move: port particles that came in become blood and a new one follows three layers behind; blood that went out becomes port;
 // what lies more than three layers out is removed. Updates port_flow, port_volume, the Windkessel and the ledger.

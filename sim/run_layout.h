@@ -26,6 +26,7 @@ void for_each_scalar(StateT& state, Visit&& visit) {
   visit("particles_out", ledger.particles_out);
   visit("particles_lost", ledger.particles_lost);
   visit("penetrations", ledger.penetrations);
+  visit("sheet_crossings", ledger.sheet_crossings);
   visit("deepest_penetration", ledger.deepest_penetration);
   visit("refused_steps", ledger.refused_steps);
   visit("limiter_hits", ledger.limiter_hits);

@@ -4,7 +4,9 @@
 #include <stdexcept>
 
 #include "sim/number_density.h"
+#include "sim/port_walls.h"
 #include "sim/ports.h"
+#include "sim/sides.h"
 #include "sim/step.h"
 #include "sim/workspace.h"
 
@@ -62,6 +64,7 @@ double reference_speed(const SceneDescription<D>& description) {
 template <int D>
 Scene<D> make_scene(SceneDescription<D> description) {
   Scene<D> scene;
+  if (!description.ports.empty()) continue_walls_beyond_ports(description, 3.5 * description.spacing);
   SchemeSettings& scheme = description.scheme;
   bool fluid = false, viscous = false, shear_dependent = false, shells = false, solids = false;
   for (const auto& body : description.bodies) {
@@ -87,8 +90,17 @@ Scene<D> make_scene(SceneDescription<D> description) {
   if (solids) scene.solids = build_solids(d);
   if (shells) {
     scene.shells = build_shells(d);
-    if (fluid) scene.shells->axial_dashpot = 5000;
+    if (fluid) {
+      const ShellBody& first = scene.shells->bodies.front();
+      double blood = 0;
+      for (const auto& body : d.bodies)
+        if (body.kind == Kind::fluid) blood = std::max(blood, body.fluid.density);
+      const double own = first.density * first.thickness, layer = blood * std::max(d.spacing - first.thickness, 0.5 * d.spacing);
+      scene.shells->axial_dashpot = 5000;
+      scene.shells->bending_dashpot = d.scheme.bending_viscosity / d.spacing * (1 + d.scheme.added_mass * layer / own);
+    }
     scene.contact = build_contact(d, *scene.shells);
+    if (fluid) scene.sheet = std::make_shared<const SheetGeometry<D>>(make_sheet_geometry(*scene.shells));
   }
   scene.reference_speed = reference_speed(d);
   Vector<D> low = Vector<D>::Constant(1e300), high = -low;

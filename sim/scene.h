@@ -2,6 +2,7 @@
 // for is absent: no arrays, no stage, no cost.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "sim/contact.h"
@@ -22,6 +23,9 @@ struct Pressure {
 };
 
 template <int D>
+struct SheetGeometry;
+
+template <int D>
 struct Scene {
   SceneDescription<D> description;
   Lattice lattice;
@@ -39,6 +43,7 @@ struct Scene {
   std::optional<SolidElasticity<D>> solids;
   std::optional<ShellElasticity<D>> shells;
   std::optional<Contact<D>> contact;
+  std::shared_ptr<const SheetGeometry<D>> sheet;  // where there are shells in blood: their elements, for cutting links
 };
 
 // Throws std::invalid_argument with one line on what cannot be simulated.

@@ -156,7 +156,9 @@ struct SchemeSettings {                    // every numerical knob; lengths in u
   double shifting = 0.6;                   // largest strength A of particle shifting; 0 = off
   double subparticle_dissipation = 0.1;    // C of the dissipation for unresolved scales; 0 = off
   double viscosity_limit = 1000;           // Pa s, cap of the rheological viscosity
-  double added_mass = 1.0;                 // of rho l0 per leaflet area: the blood's inertia that elastic sub-steps feel along the normal; stable in about [0.5, 2]
+  double added_mass = 2.0;                 // factor on the blood's mass within a leaflet's own lattice layer, rho (l0 - h) per area
+  double resolved_mass = 0.3;              // share of (leaflet + layer) mass by which the blood farther out is felt within a step
+  double bending_viscosity = 60;           // m/s: leaflets in blood: the shortest bending wave dies out at the rate of this over l0
   double elastic_substep = 0.35;           // of l0/c; explicit elastic sub-steps; refused above 0.5
   int elastic_explicit_limit = 200;        // solids: more explicit sub-steps than this in a step, and they are advanced implicitly
   double elastic_tolerance = 1e-8;         // relative residual of implicit and static elastic solves

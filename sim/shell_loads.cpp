@@ -6,8 +6,8 @@ namespace sim {
 
 // Forces shared over rows, accelerations times mass, and pressures that follow the surface: -p A n on each row (against the + side).
 template <int D>
-void add_shell_loads(const ShellElasticity<D>& shells, const std::vector<Load<D>>& loads, double time,
-                     std::span<const Vector<D>> position, std::span<Vector<D>> force) {
+void add_shell_loads(const ShellElasticity<D>& shells, const std::vector<Load<D>>& loads, double time, std::span<const Vector<D>> position,
+                     std::span<Vector<D>> force) {
   std::vector<Padded<D>> x;
   for (const Load<D>& load : loads) {
     const double factor = load_factor(load, time);

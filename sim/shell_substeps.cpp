@@ -66,6 +66,14 @@ void advance(const ShellElasticity<D>& shells, const Contact<D>* contact, const 
   work.next_x[i] = work.x[i] + v * dt;
 }
 
+// Largest ratio by which the added mass slows the bending dashpot down: it is scaled for the heavier rows.
+template <int D>
+double lightest_share(const ShellElasticity<D>& shells, const ShellSubstepInput<D>& input) {
+  double least = 1e300;
+  for (std::size_t i = 0; i < shells.size(); ++i) least = std::min(least, 1 + input.added_mass[i] / shells.mass[i]);
+  return least;
+}
+
 }  // namespace
 
 template <int D>
@@ -79,7 +87,9 @@ ShellSubstepReport shell_substeps(const ShellElasticity<D>& shells, Contact<D>* 
   double left = input.duration;
   while (left > 1e-9 * input.duration) {
     // Equal sub-steps; the limit is renewed each chunk, 5 % below what the present stretch allows.
-    const double limit = 0.95 * shell_time_step_limit<D>(shells, position);
+    double limit = 0.95 * shell_time_step_limit<D>(shells, position);
+    if (shells.bending_dashpot > 0 && !input.added_mass.empty())
+      limit = std::min(limit, 0.4 * lightest_share(shells, input) / shells.bending_dashpot);
     const auto wanted = static_cast<std::int64_t>(std::ceil(left / limit - 1e-9));
     const int count = static_cast<int>(std::min<std::int64_t>(chunk, std::max<std::int64_t>(wanted, 1)));
     const double dt = left / static_cast<double>(std::max<std::int64_t>(wanted, 1));

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/leaflet_coupling.h"
 #include "sim/number_density.h"
 #include "sim/operators.h"
 #include "sim/parallel.h"
 #include "sim/ports.h"
 #include "sim/pressure.h"
 #include "sim/shifting.h"
+#include "sim/sides.h"
 #include "sim/walls.h"
 
 namespace sim {
@@ -74,8 +76,8 @@ void check_step(const Scene<D>& scene, const State<D>& state, double dt) {
 
 template <int D>
 void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
-  prescribe_ports(scene, state, state.time + dt);
   find_neighborhood(scene, state, work);
+  prescribe_ports<D>(scene, state, &work, state.time + dt);
   moment_matrices(scene, state, work);
   velocity_gradients(scene, state, work);
   body_accelerations(scene, state, work);
@@ -83,10 +85,17 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
   if (scene.viscosity) {
     particle_viscosity(scene, state, work);
     if (scene.viscosity->corrected) add_laplacian_correction(scene, state, work);
-    report.viscosity_iterations = solve_viscosity<D>(scene, state, work, dt, {}).iterations;
+    work.boundary_force.assign(static_cast<std::size_t>(scene.elastic_count + scene.shell_count), Vector<D>::Zero());
+    report.viscosity_iterations = solve_viscosity<D>(scene, state, work, dt, work.boundary_force).iterations;
   }
   number_unknowns(scene, state, work);
   pressure_poisson(scene, state, work, dt);
+  if (scene.shells) {
+    report.elastic_substeps = predict_leaflets(scene, state, work, dt).substeps;
+    wetted_sides(scene, state, work);
+    couple_leaflets(scene, state, work, dt);
+    remember_sides(scene, state, work);
+  }
   const SolveReport solve = solve_pressure(scene, state, work);
   report.pressure_iterations = solve.iterations;
   report.pressure_residual = solve.residual;
@@ -94,13 +103,26 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
     throw NumericalFailure("the pressure equation did not converge");
   state.ledger.pressure_iterations += solve.iterations;
   pressure_gradients(scene, state, work);
+  if (scene.shells) correct_leaflets(scene, state, work, dt);
   shifting_displacement(scene, state, work, dt);
   advance_fluid(scene, state, work, dt);
   shift_particles(scene, state, work);
   separate_particles(scene, state, work);
+  if (scene.sheet) keep_sides(scene, state, work);
   exchange_through_ports(scene, state, dt);
   remove_escaped(scene, state);
   wrap_positions(scene, state);
+}
+
+// Shells alone, under their loads.
+template <int D>
+void step_dry_shells(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
+  const ShellSubstepReport shells = predict_leaflets(scene, state, work, dt);
+  report.elastic_substeps = shells.substeps;
+  state.ledger.elastic_substeps += shells.substeps;
+  state.ledger.limiter_hits += shells.limiter_hits;
+  std::copy(work.shell_position.begin(), work.shell_position.end(), state.position.begin() + scene.elastic_count);
+  std::copy(work.shell_velocity.begin(), work.shell_velocity.end(), state.velocity.begin() + scene.elastic_count);
 }
 
 }  // namespace
@@ -123,6 +145,7 @@ void find_neighborhood(const Scene<D>& scene, const State<D>& state, Workspace<D
   link_weights(scene, state, work);
   particle_number_density(scene, state, work);
   find_free_surface(scene, state, work);
+  if (scene.sheet) cut_links(scene, state, work);
   if (scene.pressure && !scene.pressure->free_surface && state.step > 0) work.surface.assign(n, 0);
 }
 
@@ -136,7 +159,11 @@ StepReport step(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
   for (;;) {
     try {
       move_walls(scene, state, dt);
-      if (scene.pressure) step_fluid(scene, state, work, dt, report);
+      if (scene.contact && !work.contact) work.contact = scene.contact;
+      if (scene.pressure)
+        step_fluid(scene, state, work, dt, report);
+      else if (scene.shells)
+        step_dry_shells(scene, state, work, dt, report);
       check_step(scene, state, dt);
       break;
     } catch (const NumericalFailure& failure) {

@@ -63,6 +63,12 @@ void boundary_surfaces(const Scene<D>& scene, const State<D>& state, Workspace<D
   const std::size_t first = static_cast<std::size_t>(scene.first_fluid);
   work.boundary_normal.assign(particles.normal.begin(), particles.normal.begin() + static_cast<std::ptrdiff_t>(first));
   work.boundary_velocity.assign(state.velocity.begin(), state.velocity.begin() + static_cast<std::ptrdiff_t>(first));
+  if (scene.shells) {
+    std::vector<double> area(static_cast<std::size_t>(scene.shell_count));
+    const auto first_shell = static_cast<std::size_t>(scene.elastic_count), shells = area.size();
+    shell_normals_and_areas<D>(*scene.shells, std::span(state.position).subspan(first_shell, shells),
+                               std::span(work.boundary_normal).subspan(first_shell, shells), area);
+  }
   for (const auto& motion : scene.description.motions) {
     const Body& body = scene.description.bodies[motion.body];
     if (!motion.angular_velocity.value.empty() && body.count > 1) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "sim/contact.h"
@@ -50,9 +51,31 @@ struct Workspace {
   SymmetricMatrix viscous_matrix;
   std::vector<double> viscous_source, viscous_solution;
 
-  // leaflets and solids
-  Contact<D> contact;
-  std::vector<double> stage_seconds;  // by Stage, of this run
+  // leaflets
+  std::optional<Contact<D>> contact;     // a copy of the scene's: it keeps its search between steps
+  std::vector<std::int32_t> near_sheet;  // fluid rows with a shell particle within the radius
+  struct WetLink {
+    std::int32_t unknown;
+    double weight;
+  };
+  std::vector<std::vector<WetLink>> wetting;  // 2 s + side: blood that wets shell row s on its + (0) or - (1) side, weights sum to 1
+  std::vector<std::uint8_t> wet_side;         // 2 s + side: 1 = wetted itself, 0 = dry (weights taken from mesh neighbours)
+  struct Coupling {
+    double strength;             // A²/m, m⁴/kg
+    std::vector<WetLink> links;  // + side positive, - side negative
+  };
+  std::vector<Coupling> coupling;
+  std::vector<std::int32_t> coupling_of;  // per shell row, -1 where it is held or dry
+  struct SideMemory {
+    std::int32_t element = -1;
+    std::int8_t side = 0;
+  };
+  std::vector<SideMemory> side_memory;  // per entry of near_sheet
+  std::vector<Vector<D>> shell_position, shell_velocity, shell_normal, shell_mean_force, shell_outer_force, shell_free_velocity;
+  std::vector<double> shell_area, shell_local_mass;  // m², kg: of the blood that moves with a leaflet particle along its normal
+  std::vector<Vector<D>> boundary_force;             // rows of solids and shells: the blood's drag, N
+
+  std::vector<double> stage_seconds;  // per stage of the step, summed over this run
 };
 
 }  // namespace sim

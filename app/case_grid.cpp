@@ -1,0 +1,137 @@
+#include "app/case_grid.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <thread>
+
+#include "app/progress.h"
+#include "app/scene_table.h"
+#include "sim/run_file.h"
+
+extern char** environ;
+
+namespace app {
+namespace {
+
+double now_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+bool finished_before(const GridCase& one) {
+  try {
+    return std::filesystem::exists(one.run()) && sim::RunReader(one.run()).status() == "finished";
+  } catch (const std::exception&) {
+    return false;  // broken: run again
+  }
+}
+
+// Starts a child whose output goes to log.txt in the case's folder.
+pid_t start(const std::vector<std::string>& words, const std::filesystem::path& folder) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  const std::string log = (folder / "log.txt").string();
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  pid_t child = -1;
+  const int status = posix_spawn(&child, words.front().c_str(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  return status == 0 ? child : -1;
+}
+
+}  // namespace
+
+Variation parse_variation(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw SceneError("--vary " + text + ": is no KEY=V1,V2,...; as in --vary spacing=0.02,0.01");
+  Variation variation{text.substr(0, equals), {""}};
+  int depth = 0;
+  bool quoted = false;
+  for (char c : text.substr(equals + 1)) {
+    if (c == '"') quoted = !quoted;
+    if (!quoted) depth += (c == '[' || c == '{') - (c == ']' || c == '}');
+    if (c == ',' && depth == 0 && !quoted)
+      variation.values.emplace_back();
+    else
+      variation.values.back() += c;
+  }
+  for (const std::string& value : variation.values)
+    if (value.empty()) throw SceneError("--vary " + text + ": has an empty value; write values with commas between them");
+  return variation;
+}
+
+std::vector<GridCase> grid_cases(const std::vector<Variation>& variations, const std::filesystem::path& folder) {
+  std::vector<GridCase> cases{{folder, {}}};
+  for (const Variation& variation : variations) {
+    std::vector<GridCase> next;
+    for (const GridCase& one : cases)
+      for (const std::string& value : variation.values) {
+        next.push_back(one);
+        next.back().settings.push_back(variation.key + "=" + value);
+      }
+    cases = std::move(next);
+  }
+  for (GridCase& one : cases) {
+    std::string name;
+    for (const std::string& setting : one.settings) name += (name.empty() ? "" : "__") + setting;
+    for (char& c : name)
+      if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-' && c != '_' && c != '=') c = '_';
+    one.folder = folder / (name.empty() ? "case" : name);
+  }
+  return cases;
+}
+
+std::vector<std::string> case_command(const GridCase& one, const GridOptions& options, const std::string& program) {
+  std::vector<std::string> words{program, "run", options.scene.string(), "-o", one.run().string(), "--continue", "--quiet"};
+  const int threads = options.threads > 0 ? options.threads
+                                          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / std::max(1, options.jobs));
+  words.insert(words.end(), {"--threads", std::to_string(threads)});
+  for (const auto* settings : {&options.settings, &one.settings})
+    for (const std::string& setting : *settings) words.insert(words.end(), {"--set", setting});
+  return words;
+}
+
+std::vector<int> run_grid(const std::vector<GridCase>& cases, const GridOptions& options) {
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+  const std::atomic<bool>& stop = stop_on_signal();
+  const double started = now_seconds();
+  std::vector<int> codes(cases.size(), -1);
+  std::map<pid_t, std::size_t> running;
+  std::size_t next = 0, done = 0;
+  const auto over = [&] { return stop.load() || (options.budget_seconds > 0 && now_seconds() - started > options.budget_seconds); };
+  while (!running.empty() || (next < cases.size() && !over())) {
+    while (next < cases.size() && static_cast<int>(running.size()) < std::max(1, options.jobs) && !over()) {
+      const std::size_t index = next++;
+      if (finished_before(cases[index])) {
+        codes[index] = 0, ++done;
+        continue;
+      }
+      std::filesystem::create_directories(cases[index].folder);
+      const pid_t child = start(case_command(cases[index], options, program), cases[index].folder);
+      if (child < 0) throw std::runtime_error("can't start " + program);
+      running[child] = index;
+    }
+    if (running.empty()) continue;
+    int status = 0;
+    const pid_t ended = waitpid(-1, &status, 0);
+    const auto found = running.find(ended);
+    if (found == running.end()) continue;
+    codes[found->second] = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+    ++done;
+    if (!options.quiet)
+      std::fprintf(stderr, "%zu of %zu: %s %s, %s so far\n", done, cases.size(), cases[found->second].folder.filename().string().c_str(),
+                   codes[found->second] == 0 ? "finished" : "failed", duration_text(now_seconds() - started).c_str());
+    running.erase(found);
+  }
+  return codes;
+}
+
+}  // namespace app

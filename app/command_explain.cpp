@@ -1,0 +1,62 @@
+// cusp explain SCENE [--measure]
+#include <cstdio>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/explain.h"
+#include "app/progress.h"
+
+namespace app {
+namespace {
+
+struct Options {
+  std::string scene;
+  std::vector<std::string> settings;
+  bool measure = false, json = false;
+};
+
+void print_plain(const nlohmann::json& about) {
+  const auto text = [](const nlohmann::json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); };
+  std::printf("%s: %s, %s-D, spacing %s m\n\nbodies\n", text(about["scene"]).c_str(), text(about["title"]).c_str(),
+              text(about["dimension"]).c_str(), text(about["spacing"]).c_str());
+  for (const auto& body : about["bodies"])
+    std::printf("  %-16s %-8s %9s particles  %s\n", text(body["name"]).c_str(), text(body["kind"]).c_str(), text(body["particles"]).c_str(),
+                text(body["material"]).c_str());
+  std::printf("  %s particles in all\n\none time step, in order\n", text(about["particles"]).c_str());
+  int number = 0;
+  for (const auto& stage : about.value("stages", nlohmann::json::array()))
+    std::printf("  %2d. %-48s because of %s\n", ++number, text(stage["stage"]).c_str(), text(stage["because"]).c_str());
+  std::printf("\nnot simulated (no key asks for it)\n");
+  for (const auto& stage : about.value("not_simulated", nlohmann::json::array())) std::printf("  %s\n", text(stage).c_str());
+  std::printf("\nmemory about %.0f MB (state %.1f MB)\n", about["memory_bytes_about"].get<double>() / 1e6,
+              about["state_bytes"].get<double>() / 1e6);
+  if (about.contains("measured"))
+    std::printf("measured: %.3g s a step of %.3g s (%.3g microseconds a particle)\n", about["measured"]["seconds_a_step"].get<double>(),
+                about["measured"]["step"].get<double>(), about["measured"]["microseconds_a_particle_and_step"].get<double>());
+  if (about.contains("estimated_seconds"))
+    std::printf("time about %s%s\n", duration_text(about["estimated_seconds"].get<double>()).c_str(),
+                about.contains("measured") ? "" : " (a guess; --measure runs a few steps)");
+  for (const auto& warning : about["warnings"]) std::printf("warning: %s\n", text(warning).c_str());
+}
+
+}  // namespace
+
+void add_explain_command(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("explain", "say what would be simulated, what not, and what it costs");
+  command->footer("Example: cusp explain scene.toml --measure");
+  command->add_option("SCENE", options->scene, "scene file (.toml)")->required();
+  command->add_option("--set", options->settings, "KEY=VALUE; may be repeated")->allow_extra_args(false);
+  command->add_flag("--measure", options->measure, "run a few steps and say what they cost");
+  command->add_flag("--json", options->json, "print one JSON object");
+  command->callback([options, &exit_code] {
+    const nlohmann::json about = explain_scene(read_scene_file(options->scene, options->settings), options->measure ? 5 : 0);
+    if (options->json)
+      std::printf("%s\n", about.dump(2).c_str());
+    else
+      print_plain(about);
+    exit_code = 0;
+  });
+}
+
+}  // namespace app

@@ -1,0 +1,187 @@
+#include "sim/leaflet_coupling.h"
+
+#include <algorithm>
+
+namespace sim {
+using Index = std::ptrdiff_t;
+
+template <int D>
+ShellSubstepReport predict_leaflets(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt) {
+  const ShellElasticity<D>& shells = *scene.shells;
+  const Index n = static_cast<Index>(scene.shell_count), first = static_cast<Index>(scene.elastic_count);
+  auto rows = [&](const auto& v) { return std::span(v).subspan(first, n); };
+  work.shell_position.assign(state.position.begin() + first, state.position.begin() + first + n);
+  work.shell_velocity.assign(state.velocity.begin() + first, state.velocity.begin() + first + n);
+  work.shell_normal.resize(n);
+  work.shell_area.resize(n);
+  shell_normals_and_areas<D>(shells, rows(state.position), work.shell_normal, work.shell_area);
+  // outer forces that are not the blood's pressure: gravity, loads, the blood's drag
+  work.shell_outer_force.assign(n, Vector<D>::Zero());
+  add_shell_loads<D>(shells, scene.description.loads, state.time + dt, rows(state.position), work.shell_outer_force);
+  if (scene.gravity)
+    for (Index s = 0; s < n; ++s) work.shell_outer_force[s] += shells.mass[s] * scene.gravity->acceleration;
+  if (!work.boundary_force.empty())
+    for (Index s = 0; s < n; ++s) work.shell_outer_force[s] += work.boundary_force[first + s];
+  std::vector<Vector<D>> external = work.shell_outer_force;
+  std::vector<double> added(n);
+  std::vector<Vector<D>> reference(n);
+  double blood_density = 0;
+  for (const auto& body : scene.description.bodies)
+    if (body.kind == Kind::fluid) blood_density = std::max(blood_density, body.fluid.density);
+  work.shell_local_mass.resize(n);
+  for (Index s = 0; s < n; ++s) {
+    external[s] += state.fluid_force[first + s];
+    const double thickness = shells.bodies[shells.body[s]].thickness, l0 = scene.lattice.spacing;
+    work.shell_local_mass[s] =
+        scene.description.scheme.added_mass * blood_density * work.shell_area[s] * std::max(l0 - thickness, 0.5 * l0);
+    // of the blood farther out a part follows the leaflet at once, at last step's acceleration
+    const double follows = scene.description.scheme.resolved_mass * (shells.mass[s] + work.shell_local_mass[s]);
+    added[s] = work.shell_local_mass[s] + follows;
+    reference[s] = follows / added[s] * state.fluid_acceleration[first + s];
+  }
+  work.shell_mean_force.resize(n);
+  ShellSubstepInput<D> input;
+  input.external_force = external;
+  if (scene.pressure) {
+    input.added_mass = added;
+    input.added_normal = work.shell_normal;
+    input.reference_acceleration = reference;
+  }
+  input.duration = dt;
+  const ShellSubstepReport report = shell_substeps<D>(shells, work.contact ? &*work.contact : nullptr, input, work.shell_position,
+                                                      work.shell_velocity, work.shell_mean_force);
+  work.shell_free_velocity.resize(n);
+  for (Index s = 0; s < n; ++s) {
+    const Vector<D> force = work.shell_mean_force[s] + work.shell_outer_force[s];
+    const double along = force.dot(work.shell_normal[s]), mass = shells.mass[s];
+    Vector<D> v = state.velocity[first + s] +
+                  dt * ((force - along * work.shell_normal[s]) / mass + along / (mass + work.shell_local_mass[s]) * work.shell_normal[s]);
+    for (int k = 0; k < D; ++k)
+      if (shells.fixed[s] >> k & 1) v[k] = 0;
+    work.shell_free_velocity[s] = v;
+  }
+  return report;
+}
+
+template <int D>
+void couple_leaflets(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt) {
+  const ShellElasticity<D>& shells = *scene.shells;
+  const Index n = static_cast<Index>(scene.shell_count), first = static_cast<Index>(scene.elastic_count);
+  work.coupling.clear();
+  work.coupling_of.assign(n, -1);
+  for (Index s = 0; s < n; ++s) {
+    const auto &plus = work.wetting[2 * s], &minus = work.wetting[2 * s + 1];
+    if (plus.empty() || minus.empty() || shells.fixed[s]) continue;
+    const double area = work.shell_area[s];
+    const double jump = (work.shell_free_velocity[s] - state.velocity[first + s]).dot(work.shell_normal[s]);
+    typename Workspace<D>::Coupling c;
+    c.strength = area * area / (shells.mass[s] + work.shell_local_mass[s]);
+    for (const auto& link : plus) c.links.push_back({link.unknown, link.weight});
+    for (const auto& link : minus) c.links.push_back({link.unknown, -link.weight});
+    for (const auto& link : c.links) work.source[link.unknown] += link.weight * area * jump / dt;
+    work.coupling_of[s] = static_cast<std::int32_t>(work.coupling.size());
+    work.coupling.push_back(std::move(c));
+  }
+}
+
+template <int D>
+void apply_coupling(const Workspace<D>& work, std::span<const double> x, std::span<double> y) {
+  for (const auto& c : work.coupling) {
+    double sum = 0;
+    for (const auto& link : c.links) sum += link.weight * x[link.unknown];
+    sum *= c.strength;
+    for (const auto& link : c.links) y[link.unknown] += sum * link.weight;
+  }
+}
+
+template <int D>
+SymmetricMatrix matrix_for_multigrid(const Workspace<D>& work) {
+  constexpr std::size_t strongest = 4;  // links a side that stand for all
+  struct Entry {
+    std::int32_t row, column;
+    double value;
+  };
+  std::vector<Entry> entries;
+  SymmetricMatrix a;
+  a.diagonal = work.matrix.diagonal;
+  for (const auto& c : work.coupling) {
+    std::vector<typename Workspace<D>::WetLink> side[2];
+    for (const auto& link : c.links) side[link.weight > 0 ? 0 : 1].push_back(link);
+    for (auto& s : side) {
+      std::stable_sort(s.begin(), s.end(), [](const auto& p, const auto& q) { return std::abs(p.weight) > std::abs(q.weight); });
+      if (s.size() > strongest) s.resize(strongest);
+      double sum = 0;
+      for (const auto& link : s) sum += std::abs(link.weight);
+      for (auto& link : s) link.weight = std::abs(link.weight) / sum;
+    }
+    for (const auto& p : side[0])
+      for (const auto& q : side[1]) {
+        if (p.unknown == q.unknown) continue;
+        const double v = c.strength * p.weight * q.weight;
+        entries.push_back({p.unknown, q.unknown, -v});
+        entries.push_back({q.unknown, p.unknown, -v});
+        a.diagonal[p.unknown] += v;
+        a.diagonal[q.unknown] += v;
+      }
+  }
+  std::stable_sort(entries.begin(), entries.end(), [](const Entry& p, const Entry& q) { return p.row < q.row; });
+  const std::size_t rows = work.matrix.rows();
+  a.start.assign(rows + 1, 0);
+  a.column.reserve(work.matrix.column.size() + entries.size());
+  a.value.reserve(work.matrix.column.size() + entries.size());
+  std::size_t e = 0;
+  for (std::size_t u = 0; u < rows; ++u) {
+    for (std::int64_t k = work.matrix.start[u]; k < work.matrix.start[u + 1]; ++k) {
+      a.column.push_back(work.matrix.column[k]);
+      a.value.push_back(work.matrix.value[k]);
+    }
+    for (; e < entries.size() && entries[e].row == static_cast<std::int32_t>(u); ++e) {
+      a.column.push_back(entries[e].column);
+      a.value.push_back(entries[e].value);
+    }
+    a.start[u + 1] = static_cast<std::int64_t>(a.column.size());
+  }
+  return a;
+}
+
+template <int D>
+void correct_leaflets(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt) {
+  const ShellElasticity<D>& shells = *scene.shells;
+  const Index n = static_cast<Index>(scene.shell_count), first = static_cast<Index>(scene.elastic_count);
+  for (Index s = 0; s < n; ++s) {
+    auto side_pressure = [&](const std::vector<typename Workspace<D>::WetLink>& links, double otherwise) {
+      double p = 0;
+      for (const auto& link : links) p += link.weight * work.solution[link.unknown];
+      return links.empty() ? otherwise : p;
+    };
+    const auto &plus = work.wetting[2 * s], &minus = work.wetting[2 * s + 1];
+    double p_plus = side_pressure(plus, 0), p_minus = side_pressure(minus, p_plus);
+    if (plus.empty()) p_plus = p_minus;
+    state.pressure_plus[s] = p_plus;
+    state.pressure_minus[s] = p_minus;
+    state.pressure[first + s] = 0.5 * (p_plus + p_minus);
+    const Vector<D> force = -work.shell_area[s] * (p_plus - p_minus) * work.shell_normal[s];
+    state.fluid_force[first + s] = force;
+    Vector<D> v = work.shell_free_velocity[s] + dt / (shells.mass[s] + work.shell_local_mass[s]) * force;
+    for (int k = 0; k < D; ++k)
+      if (shells.fixed[s] >> k & 1) v[k] = 0;
+    state.fluid_acceleration[first + s] = (v - state.velocity[first + s]) / dt;
+    Vector<D> move = 0.5 * dt * (v - work.shell_velocity[s]);
+    for (int k = 0; k < D; ++k)
+      if (shells.fixed[s] >> k & 1) move[k] = 0;
+    state.position[first + s] = work.shell_position[s] + move;
+    state.velocity[first + s] = v;
+  }
+}
+
+#define INSTANTIATE(D)                                                                                   \
+  template ShellSubstepReport predict_leaflets(const Scene<D>&, const State<D>&, Workspace<D>&, double); \
+  template void couple_leaflets(const Scene<D>&, const State<D>&, Workspace<D>&, double);                \
+  template void apply_coupling(const Workspace<D>&, std::span<const double>, std::span<double>);         \
+  template SymmetricMatrix matrix_for_multigrid(const Workspace<D>&);                                    \
+  template void correct_leaflets(const Scene<D>&, State<D>&, Workspace<D>&, double);
+INSTANTIATE(2)
+INSTANTIATE(3)
+#undef INSTANTIATE
+
+}  // namespace sim

@@ -1,0 +1,39 @@
+// Leaflets and blood in one projection (docs/equations.md; numerics-coupling.md "B2" with the sides' pressures eliminated).
+//
+// Shell particle b with normal N, area A, mass m feels p+ and p- of the blood that wets its sides, p = sum w_i p_i with sum w_i = 1, and
+// pushes the same blood out of its way with the same weights:
+//   v_b = v^_b - dt/m A (p+ - p-) N
+//   volume balance of blood i (times V):  ... = ... + sum_b s w_i A (v_b - v_b^n).N / dt,  s = +1 on the normal's side, -1 on the other.
+// where m is, along the normal, the leaflet's own mass plus that of the blood within its lattice layer, rho A (l0 - h): a leaflet particle
+// stands in the place of a layer l0 thick but is only h thick. The elastic sub-steps move the same mass.
+// Eliminating v_b adds sum_b A²/m g g^T to the pressure matrix, g = (s w_i): symmetric and positive, so force and displaced volume are
+// each other's adjoint and the leaflet's real mass stabilises the coupling at any density ratio.
+#pragma once
+
+#include "sim/scene.h"
+#include "sim/workspace.h"
+
+namespace sim {
+
+// Explicit elastic sub-steps over dt with the last step's blood force:
+// work.shell_position, shell_velocity; work.shell_free_velocity = v^n + dt (mean internal + outer force)/m: the velocity without blood.
+template <int D>
+ShellSubstepReport predict_leaflets(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt);
+
+// Adds the sources of the leaflets' motion without blood to work.source and fills work.coupling (the rank-one terms).
+template <int D>
+void couple_leaflets(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt);
+
+// y += sum_b A²/m g (g . x)
+template <int D>
+void apply_coupling(const Workspace<D>& work, std::span<const double> x, std::span<double> y);
+
+// The pressure matrix with the rank-one terms replaced by links between the blood of the two sides: what the multigrid is built from.
+template <int D>
+SymmetricMatrix matrix_for_multigrid(const Workspace<D>& work);
+
+// Velocities, positions, pressures, forces and accelerations of the leaflets from the solved pressure.
+template <int D>
+void correct_leaflets(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt);
+
+}  // namespace sim

@@ -1,0 +1,342 @@
+#include "sim/sides.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+
+namespace sim {
+using Index = std::ptrdiff_t;
+
+template <int D>
+SheetGeometry<D> make_sheet_geometry(const ShellElasticity<D>& shells) {
+  SheetGeometry<D> sheet;
+  const std::size_t n = shells.size();
+  std::vector<std::int32_t> count(n, 0);
+  for (const auto& element : shells.elements)
+    for (std::int32_t s : element) ++count[s];
+  sheet.incident_start.assign(n + 1, 0);
+  for (std::size_t s = 0; s < n; ++s) sheet.incident_start[s + 1] = sheet.incident_start[s] + count[s];
+  sheet.incident.resize(sheet.incident_start[n]);
+  std::vector<std::int32_t> next(sheet.incident_start.begin(), sheet.incident_start.end() - 1);
+  std::map<std::array<std::int32_t, D - 1>, int> facets;  // in 3-D edges, in 2-D end points: those of one element bound the sheet
+  for (std::size_t e = 0; e < shells.elements.size(); ++e) {
+    const auto& element = shells.elements[e];
+    std::array<std::int32_t, D> rows;
+    for (int k = 0; k < D; ++k) {
+      sheet.incident[next[element[k]]++] = static_cast<std::int32_t>(e);
+      rows[k] = element[k] + static_cast<std::int32_t>(shells.first_row);
+      std::array<std::int32_t, D - 1> facet;
+      for (int m = 0; m < D - 1; ++m) facet[m] = element[(k + m) % D];
+      std::sort(facet.begin(), facet.end());
+      ++facets[facet];
+    }
+    sheet.elements.push_back(rows);
+  }
+  sheet.edge.assign(n, 0);
+  for (const auto& [facet, uses] : facets)
+    if (uses == 1)
+      for (std::int32_t s : facet) sheet.edge[s] = 1;
+  return sheet;
+}
+
+namespace {
+
+template <int D>
+struct Element {
+  Vector<D> origin, normal;               // normal not unit
+  Eigen::Matrix<double, D, D - 1> edges;  // 3-D: e1, e2; 2-D: the segment
+};
+
+template <int D>
+Element<D> element_at(const State<D>& state, const std::array<std::int32_t, D>& rows) {
+  Element<D> e;
+  e.origin = state.position[rows[0]];
+  for (int k = 1; k < D; ++k) e.edges.col(k - 1) = state.position[rows[k]] - e.origin;
+  if constexpr (D == 2)
+    e.normal = Vector<2>(-e.edges(1, 0), e.edges(0, 0));
+  else
+    e.normal = Eigen::Vector3d(e.edges.col(0)).cross(Eigen::Vector3d(e.edges.col(1)));
+  return e;
+}
+
+// Whether the point x (in the element's plane) lies in the element, with a hair's margin so that no link slips between two.
+template <int D>
+bool in_element(const Element<D>& e, const Vector<D>& x) {
+  constexpr double margin = 1e-6;
+  const Vector<D> r = x - e.origin;
+  if constexpr (D == 2) {
+    const double s = r.dot(e.edges.col(0)) / e.edges.col(0).squaredNorm();
+    return s >= -margin && s <= 1 + margin;
+  } else {
+    const Eigen::Vector3d e1 = e.edges.col(0), e2 = e.edges.col(1);
+    const double square = e.normal.squaredNorm();
+    const double u = r.cross(e2).dot(e.normal) / square, v = e1.cross(r).dot(e.normal) / square;
+    return u >= -margin && v >= -margin && u + v <= 1 + margin;
+  }
+}
+
+template <int D>
+bool segment_crosses(const Element<D>& e, const Vector<D>& from, const Vector<D>& to, double height_from) {
+  const double height_to = (to - e.origin).dot(e.normal);
+  if ((height_from > 0) == (height_to > 0)) return false;
+  const double s = height_from / (height_from - height_to);
+  return in_element<D>(e, from + s * (to - from));
+}
+
+// Nearest point of an element: barycentric weights of its rows.
+template <int D>
+Eigen::Matrix<double, D, 1> nearest_weights(const State<D>& state, const std::array<std::int32_t, D>& rows, const Vector<D>& x) {
+  Eigen::Matrix<double, D, 1> w;
+  if constexpr (D == 2) {
+    const Vector<2> a = state.position[rows[0]], d = state.position[rows[1]] - a;
+    const double s = std::clamp((x - a).dot(d) / std::max(d.squaredNorm(), 1e-300), 0.0, 1.0);
+    w << 1 - s, s;
+  } else {  // Ericson, Real-Time Collision Detection, 5.1.5
+    const Eigen::Vector3d a = state.position[rows[0]], b = state.position[rows[1]], c = state.position[rows[2]];
+    const Eigen::Vector3d ab = b - a, ac = c - a, ap = x - a, bp = x - b, cp = x - c;
+    const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp), d6 = ac.dot(cp);
+    const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+    if (d1 <= 0 && d2 <= 0)
+      w << 1, 0, 0;
+    else if (d3 >= 0 && d4 <= d3)
+      w << 0, 1, 0;
+    else if (vc <= 0 && d1 >= 0 && d3 <= 0)
+      w << 1 - d1 / (d1 - d3), d1 / (d1 - d3), 0;
+    else if (d6 >= 0 && d5 <= d6)
+      w << 0, 0, 1;
+    else if (vb <= 0 && d2 >= 0 && d6 <= 0)
+      w << 1 - d2 / (d2 - d6), 0, d2 / (d2 - d6);
+    else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+      const double s = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+      w << 0, 1 - s, s;
+    } else {
+      const double sum = va + vb + vc;
+      w << va / sum, vb / sum, vc / sum;
+    }
+  }
+  return w;
+}
+
+// Elements that hold a shell row near row i, each once, ascending.
+template <int D>
+void elements_near(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, Index i, std::vector<std::int32_t>& out) {
+  out.clear();
+  const SheetGeometry<D>& sheet = *scene.sheet;
+  for (std::int32_t j : work.neighbors.of(i)) {
+    if (state.kind[j] != Kind::shell) continue;
+    const std::int32_t s = j - static_cast<std::int32_t>(scene.elastic_count);
+    for (std::int32_t k = sheet.incident_start[s]; k < sheet.incident_start[s + 1]; ++k) out.push_back(sheet.incident[k]);
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+}
+
+}  // namespace
+
+template <int D>
+void cut_links(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  const Index n = static_cast<Index>(state.size());
+  const SheetGeometry<D>& sheet = *scene.sheet;
+  work.near_sheet.clear();
+  for (Index i = scene.first_fluid; i < n; ++i)
+    for (std::int32_t j : work.neighbors.of(i))
+      if (state.kind[j] == Kind::shell) {
+        work.near_sheet.push_back(static_cast<std::int32_t>(i));
+        break;
+      }
+  const Index near = static_cast<Index>(work.near_sheet.size());
+#pragma omp parallel
+  {
+    std::vector<std::int32_t> candidates;
+    std::vector<Element<D>> elements;
+    std::vector<double> heights;
+#pragma omp for schedule(dynamic, 64)
+    for (Index a = 0; a < near; ++a) {
+      const Index i = work.near_sheet[a];
+      elements_near(scene, state, work, i, candidates);
+      elements.clear();
+      heights.clear();
+      for (std::int32_t e : candidates) {
+        elements.push_back(element_at<D>(state, sheet.elements[e]));
+        heights.push_back((state.position[i] - elements.back().origin).dot(elements.back().normal));
+      }
+      for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+        if (work.link_weight[k] == 0) continue;
+        const std::int32_t j = work.neighbors.index[k];
+        const bool shell = state.kind[j] == Kind::shell;
+        for (std::size_t c = 0; c < elements.size(); ++c) {
+          if (shell) {
+            const auto& rows = sheet.elements[candidates[c]];
+            if (std::find(rows.begin(), rows.end(), j) != rows.end()) continue;
+          }
+          if (!segment_crosses<D>(elements[c], state.position[i], state.position[j], heights[c])) continue;
+          work.link_weight[k] = 0;
+          break;
+        }
+      }
+    }
+  }
+  // A crossing beside j's end of a link may lie beyond what i sees: cut (i, j) wherever (j, i) is cut.
+  std::vector<std::pair<std::int32_t, std::int64_t>> also;
+#pragma omp parallel
+  {
+    std::vector<std::pair<std::int32_t, std::int64_t>> mine;
+#pragma omp for schedule(dynamic, 64) nowait
+    for (Index a = 0; a < near; ++a) {
+      const Index i = work.near_sheet[a];
+      for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+        const std::int32_t j = work.neighbors.index[k];
+        if (work.link_weight[k] != 0 || j < scene.first_fluid) continue;
+        for (std::int64_t m = work.neighbors.start[j]; m < work.neighbors.start[j + 1]; ++m)
+          if (work.neighbors.index[m] == i && work.link_weight[m] != 0) mine.emplace_back(j, m);
+      }
+    }
+#pragma omp critical
+    also.insert(also.end(), mine.begin(), mine.end());
+  }
+  for (const auto& [row, entry] : also) work.link_weight[entry] = 0;
+}
+
+template <int D>
+void wetted_sides(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  const std::size_t shells = static_cast<std::size_t>(scene.shell_count);
+  const std::int32_t first_shell = static_cast<std::int32_t>(scene.elastic_count);
+  constexpr std::size_t wet = D == 3 ? 4 : 2;  // fewer links: the side counts as dry
+  auto& wetting = work.wetting;
+  wetting.assign(2 * shells, {});
+  for (std::int32_t i : work.near_sheet) {
+    if (state.kind[i] != Kind::fluid || work.unknown[i] < 0) continue;
+    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+      const std::int32_t j = work.neighbors.index[k];
+      if (work.link_weight[k] == 0 || state.kind[j] != Kind::shell) continue;
+      const double height = scene.space.difference(state.position[j], state.position[i]).dot(work.boundary_normal[j]);
+      const std::size_t s = static_cast<std::size_t>(j - first_shell);
+      wetting[2 * s + (height > 0 ? 0 : 1)].push_back({work.unknown[i], work.link_weight[k] * std::abs(height)});
+    }
+  }
+  // Dry sides take the mean of their wet mesh neighbours', ring by ring.
+  const SheetGeometry<D>& sheet = *scene.sheet;
+  std::vector<std::uint8_t> known(2 * shells);
+  for (std::size_t a = 0; a < 2 * shells; ++a) {
+    known[a] = wetting[a].size() >= wet;
+    double sum = 0;
+    for (const auto& link : wetting[a]) sum += link.weight;
+    if (!known[a] || !(sum > 0)) wetting[a].clear(), known[a] = 0;
+    for (auto& link : wetting[a]) link.weight /= sum;
+  }
+  work.wet_side = known;
+  for (int ring = 0; ring < 8; ++ring) {
+    std::vector<std::uint8_t> next = known;
+    for (std::size_t a = 0; a < 2 * shells; ++a) {
+      if (known[a]) continue;
+      const std::size_t s = a / 2, side = a % 2;
+      std::vector<std::int32_t> from;
+      for (std::int32_t k = sheet.incident_start[s]; k < sheet.incident_start[s + 1]; ++k)
+        for (std::int32_t row : sheet.elements[sheet.incident[k]]) {
+          const std::int32_t t = row - first_shell;
+          if (known[2 * t + side] && std::find(from.begin(), from.end(), t) == from.end()) from.push_back(t);
+        }
+      if (from.empty()) continue;
+      std::map<std::int32_t, double> sum;
+      for (std::int32_t t : from)
+        for (const auto& link : wetting[2 * t + side]) sum[link.unknown] += link.weight / static_cast<double>(from.size());
+      for (const auto& [unknown, weight] : sum) wetting[a].push_back({unknown, weight});
+      next[a] = 1;
+    }
+    if (next == known) break;
+    known = next;
+  }
+}
+
+template <int D>
+void remember_sides(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  const Index near = static_cast<Index>(work.near_sheet.size());
+  work.side_memory.assign(near, {});
+#pragma omp parallel
+  {
+    std::vector<std::int32_t> candidates;
+#pragma omp for schedule(dynamic, 64)
+    for (Index a = 0; a < near; ++a) {
+      const Index i = work.near_sheet[a];
+      elements_near(scene, state, work, i, candidates);
+      double best = 1e300;
+      for (std::int32_t e : candidates) {
+        const auto& rows = scene.sheet->elements[e];
+        const auto w = nearest_weights<D>(state, rows, state.position[i]);
+        Vector<D> point = Vector<D>::Zero(), normal = Vector<D>::Zero();
+        for (int k = 0; k < D; ++k) point += w[k] * state.position[rows[k]], normal += w[k] * work.boundary_normal[rows[k]];
+        const Vector<D> r = state.position[i] - point;
+        if (r.squaredNorm() >= best) continue;
+        best = r.squaredNorm();
+        work.side_memory[a] = {e, static_cast<std::int8_t>(r.dot(normal) > 0 ? 1 : -1)};
+      }
+    }
+  }
+}
+
+template <int D>
+void keep_sides(const Scene<D>& scene, State<D>& state, Workspace<D>& work) {
+  const Index near = static_cast<Index>(work.near_sheet.size());
+  const SheetGeometry<D>& sheet = *scene.sheet;
+  const std::int32_t first_shell = static_cast<std::int32_t>(scene.elastic_count);
+  const double clearance = 0.35 * scene.lattice.spacing;
+  std::int64_t crossings = 0;
+  double deepest = 0;
+#pragma omp parallel for schedule(dynamic, 64) reduction(+ : crossings) reduction(max : deepest)
+  for (Index a = 0; a < near; ++a) {
+    const Index i = work.near_sheet[a];
+    const auto memory = work.side_memory[a];
+    if (memory.element < 0 || state.kind[i] != Kind::fluid) continue;
+    // nearest point over the remembered element and those around it
+    double best = 1e300;
+    Vector<D> point, normal, velocity;
+    bool on_edge = false;
+    for (std::int32_t row : sheet.elements[memory.element]) {
+      const std::int32_t s = row - first_shell;
+      for (std::int32_t k = sheet.incident_start[s]; k < sheet.incident_start[s + 1]; ++k) {
+        const auto& rows = sheet.elements[sheet.incident[k]];
+        const auto w = nearest_weights<D>(state, rows, state.position[i]);
+        Vector<D> p = Vector<D>::Zero();
+        for (int m = 0; m < D; ++m) p += w[m] * state.position[rows[m]];
+        if ((state.position[i] - p).squaredNorm() >= best) continue;
+        best = (state.position[i] - p).squaredNorm();
+        point = p;
+        normal.setZero();
+        velocity.setZero();
+        on_edge = true;
+        for (int m = 0; m < D; ++m) {
+          normal += w[m] * work.boundary_normal[rows[m]];
+          velocity += w[m] * state.velocity[rows[m]];
+          if (w[m] > 1e-9 && !sheet.edge[rows[m] - first_shell]) on_edge = false;
+        }
+      }
+    }
+    if (best >= 4 * scene.lattice.spacing * scene.lattice.spacing || on_edge) continue;
+    normal *= memory.side / std::max(normal.norm(), 1e-300);
+    const double height = (state.position[i] - point).dot(normal);
+    if (height >= clearance) continue;
+    if (height < 0) {
+      ++crossings;
+      deepest = std::max(deepest, -height);
+      state.position[i] += (clearance - height) * normal;
+    } else {
+      state.position[i] += std::min(clearance - height, 0.1 * scene.lattice.spacing) * normal;
+    }
+    const double closing = (velocity - state.velocity[i]).dot(normal);
+    if (closing > 0) state.velocity[i] += closing * normal;
+  }
+  state.ledger.sheet_crossings += crossings;
+  state.ledger.deepest_penetration = std::max(state.ledger.deepest_penetration, deepest);
+}
+
+#define INSTANTIATE(D)                                                           \
+  template SheetGeometry<D> make_sheet_geometry(const ShellElasticity<D>&);      \
+  template void cut_links(const Scene<D>&, const State<D>&, Workspace<D>&);      \
+  template void wetted_sides(const Scene<D>&, const State<D>&, Workspace<D>&);   \
+  template void remember_sides(const Scene<D>&, const State<D>&, Workspace<D>&); \
+  template void keep_sides(const Scene<D>&, State<D>&, Workspace<D>&);
+INSTANTIATE(2)
+INSTANTIATE(3)
+#undef INSTANTIATE
+
+}  // namespace sim
