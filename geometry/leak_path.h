@@ -15,7 +15,8 @@ struct LeakSearch {
   std::function<int(const Eigen::Vector3d&)> side;   // 1: where paths start, 2: where they end, else 0
 };
 
-// The largest clearance to all of `solids` with which a path leads from side 1 to side 2, m; 0 where none does.
-double widest_path(const std::vector<Eigen::Vector3d>& solids, const LeakSearch& search);
+// The largest clearance to all of `solids` with which a path leads from side 1 to side 2, m; 0 where none does. `narrowest` gets the place
+// on that path that is nearest to a solid.
+double widest_path(const std::vector<Eigen::Vector3d>& solids, const LeakSearch& search, Eigen::Vector3d* narrowest = nullptr);
 
 }  // namespace geometry

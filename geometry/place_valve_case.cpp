@@ -102,17 +102,27 @@ void stitch_free_edges(const std::vector<SurfaceParticles>& leaflets, double spa
   }
   for (std::size_t a = 0; a < edges.size(); ++a)
     for (const Vector3d& p : edges[a]) {
-      Vector3d nearest = p;
-      double best = 1e300;
+      std::vector<Vector3d> across;  // the nearest point of each other edge, nearest first
       for (std::size_t b = 0; b < edges.size(); ++b)
-        for (const Vector3d& q : edges[b])
-          if (a != b && (p - q).squaredNorm() < best) best = (p - q).squaredNorm(), nearest = q;
-      const int parts = int(std::ceil(std::sqrt(best) / (0.4 * spacing)));
-      for (int k = 1; k < parts; ++k) points.push_back(p + (nearest - p) * k / parts);
+        if (a != b && !edges[b].empty())
+          across.push_back(*std::min_element(edges[b].begin(), edges[b].end(), [&](const Vector3d& q, const Vector3d& r) {
+            return (q - p).squaredNorm() < (r - p).squaredNorm();
+          }));
+      std::sort(across.begin(), across.end(),
+                [&](const Vector3d& q, const Vector3d& r) { return (q - p).squaredNorm() < (r - p).squaredNorm(); });
+      if (across.empty()) continue;
+      // A line to the nearest; near the middle, where three edges meet, the triangle between them.
+      const Vector3d one = across[0] - p;
+      const bool middle = across.size() > 1 && (across[1] - p).norm() < 2 * one.norm() + 2 * spacing;
+      const Vector3d two = middle ? Vector3d(across[1] - p) : Vector3d::Zero();
+      const int parts = int(std::ceil(std::max(one.norm(), two.norm()) / (0.4 * spacing)));
+      for (int i = 0; i <= parts; ++i)
+        for (int j = 0; j <= (middle ? parts - i : 0); ++j) points.push_back(p + one * i / parts + two * j / parts);
     }
 }
 
-double leak_clearance(const ValveCase& result, const Shape& lumen, const std::vector<DomainPort>& ports, double spacing) {
+double leak_clearance(const ValveCase& result, const Shape& lumen, const std::vector<DomainPort>& ports, double spacing,
+                      Vector3d* narrowest) {
   std::vector<Vector3d> solids = result.wall.position;
   Vector3d low = Vector3d::Constant(1e300), high = -low, flow = Vector3d::Zero();
   for (const SurfaceParticles& leaflet : result.leaflets)
@@ -140,7 +150,7 @@ double leak_clearance(const ValveCase& result, const Shape& lumen, const std::ve
   search.largest = 1.5 * spacing;
   search.open = [&](const Vector3d& at) { return signed_distance(lumen, at, 3) < 0; };
   search.side = [&](const Vector3d& at) { return at.dot(flow) < bottom - spacing ? 1 : at.dot(flow) > top + spacing ? 2 : 0; };
-  return widest_path(solids, search) / spacing;
+  return widest_path(solids, search, narrowest) / spacing;
 }
 
 void rotate(ParticleSet& set, const Matrix3d& rotation) {
@@ -184,7 +194,8 @@ ValveCase place_valve_case(const TriangleMesh& lumen, const std::vector<DomainPo
   result.leaflets = std::move(leaflets);
   measure(result, bodies, turned_ports, options.spacing);
   if (options.measure_leak && !result.leaflets.empty())
-    result.leak_clearance = leak_clearance(result, bodies[0].shape, turned_ports, options.spacing);
+    result.leak_clearance = leak_clearance(result, bodies[0].shape, turned_ports, options.spacing, &result.leak_place);
+  result.leak_place = to_lattice.transpose() * result.leak_place;
   rotate(result.fluid, to_lattice.transpose());
   rotate(result.wall, to_lattice.transpose());
   for (SurfaceParticles& leaflet : result.leaflets) rotate(leaflet, to_lattice.transpose());

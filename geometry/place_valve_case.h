@@ -24,8 +24,10 @@ struct ValveCase {
   std::vector<SurfaceParticles> leaflets;
   std::vector<std::string> warnings;
   double fluid_density_mean = 0, fluid_density_deviation = 0;  // at interfaces, 1 = even
-  double nearest = 0;         // smallest distance between two centres (embedded leaflet rows not counted), in l0
-  double leak_clearance = 0;  // largest clearance to solid centres with which a path leads from ventricle to aorta, in l0
+  double nearest = 0;  // smallest distance between two centres (embedded leaflet rows not counted), in l0
+  double leak_clearance = 0;
+  Eigen::Vector3d leak_place = Eigen::Vector3d::Zero();  // m, its narrowest point  // largest clearance to solid centres with which a path
+                                                         // leads from ventricle to aorta, in l0
   double seconds = 0;
 };
 
