@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "app/case_parts.h"
@@ -223,7 +224,7 @@ struct Builder {
     const auto& indices = parts_of[probe.body];
     if (probe.points.empty()) return indices.front();
     int best = indices.front();
-    double nearest = infinite;
+    double nearest = std::numeric_limits<double>::infinity();
     for (int index : indices)
       for (const Eigen::Vector3d& x : parts.bodies[index].position)
         if ((x - probe.points.front()).norm() < nearest) nearest = (x - probe.points.front()).norm(), best = index;

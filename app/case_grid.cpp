@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "app/progress.h"
-#include "app/scene_table.h"
+#include "app/scene_error.h"
 #include "sim/run_file.h"
 
 extern char** environ;

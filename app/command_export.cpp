@@ -7,7 +7,7 @@
 
 #include "app/commands.h"
 #include "app/mesh_files.h"
-#include "app/scene_table.h"
+#include "app/scene_error.h"
 #include "sim/run_file.h"
 
 namespace app {

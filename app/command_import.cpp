@@ -8,7 +8,7 @@
 #include "app/commands.h"
 #include "app/import_picture.h"
 #include "app/mesh_files.h"
-#include "app/scene_table.h"
+#include "app/scene_error.h"
 #include "geometry/import_mesh.h"
 #include "geometry/root_frame.h"
 #include "geometry/valve_template.h"

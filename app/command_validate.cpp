@@ -10,6 +10,7 @@
 #include "app/compare.h"
 #include "app/progress.h"
 #include "app/run_case.h"
+#include "app/scene_table.h"
 
 namespace app {
 namespace {

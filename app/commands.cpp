@@ -4,7 +4,8 @@
 #include <exception>
 #include <string>
 
-#include "app/scene_table.h"
+#include "app/command_render.h"
+#include "app/scene_error.h"
 
 namespace app {
 
@@ -13,8 +14,16 @@ int run_program(int argc, char** argv) {
   program.set_version_flag("--version", CUSP_VERSION);
   program.require_subcommand(1);
   int exit_code = 0;
-  add_run_command(program, exit_code);
+  add_demo_command(program, exit_code);
+  add_import_command(program, exit_code);
   add_explain_command(program, exit_code);
+  add_run_command(program, exit_code);
+  add_replay_command(program, exit_code);
+  add_render_command(program, exit_code);
+  add_sweep_command(program, exit_code);
+  add_accuracy_command(program, exit_code);
+  add_validate_command(program, exit_code);
+  add_export_command(program, exit_code);
   add_info_command(program, exit_code);
   try {
     program.parse(argc, argv);

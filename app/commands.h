@@ -8,8 +8,15 @@ namespace app {
 
 int run_program(int argc, char** argv);
 
-void add_run_command(CLI::App& program, int& exit_code);
+void add_demo_command(CLI::App& program, int& exit_code);
+void add_import_command(CLI::App& program, int& exit_code);
 void add_explain_command(CLI::App& program, int& exit_code);
+void add_run_command(CLI::App& program, int& exit_code);
+void add_replay_command(CLI::App& program, int& exit_code);
+void add_sweep_command(CLI::App& program, int& exit_code);
+void add_accuracy_command(CLI::App& program, int& exit_code);
+void add_validate_command(CLI::App& program, int& exit_code);
+void add_export_command(CLI::App& program, int& exit_code);
 void add_info_command(CLI::App& program, int& exit_code);
 
 }  // namespace app

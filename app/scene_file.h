@@ -3,12 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/formula.h"
-#include "app/scene_table.h"
+#include "app/scene_error.h"
 #include "sim/scene_description.h"
 
 namespace app {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/scene_file.h"
+#include "app/scene_table.h"
 
 namespace app {
 

@@ -41,7 +41,8 @@ std::string dotted(const std::string& path, std::string_view key) {
 }
 
 Spot spot_of(const toml::source_region& source, std::string key) {
-  return {source.path ? *source.path : std::string(), static_cast<int>(source.begin.line), std::move(key)};
+  const bool typed = source.path && source.path->starts_with("--set");  // one line, which needs no number
+  return {source.path ? *source.path : std::string(), typed ? 0 : static_cast<int>(source.begin.line), std::move(key)};
 }
 
 void check(const Spot& spot, double value, const Range& range) {
