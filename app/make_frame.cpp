@@ -10,7 +10,8 @@
 namespace app {
 namespace {
 
-constexpr float drawn_radius = 0.62f;     // of the spacing: neighbours overlap, so that a body shows no gaps
+constexpr float drawn_radius = 0.62f;     // of the spacing, in 3-D: neighbours overlap, so that a body shows no gaps
+constexpr float flat_radius = 0.71f;      // likewise for the discs of 2-D
 constexpr float contact_distance = 0.8f;  // of the spacing: two leaflets in contact are this far apart (docs/), and drawn as touching
 
 Eigen::Vector3f point(const std::array<double, 3>& p) {
@@ -23,7 +24,7 @@ sim::Kind kind_of(const sim::RunFrame& frame, std::size_t row) { return static_c
 render::Bounds bounds_over(const sim::RunReader& run) {
   render::Bounds bounds;
   const std::size_t count = run.frame_count(), looked_at = std::min<std::size_t>(count, 8);
-  const auto radius = static_cast<float>(drawn_radius * run.header().spacing);
+  const auto radius = static_cast<float>(flat_radius * run.header().spacing);
   for (std::size_t i = 0; i < looked_at; ++i) {
     const sim::RunFrame frame = run.frame(looked_at > 1 ? i * (count - 1) / (looked_at - 1) : 0);
     for (std::size_t row = 0; row < frame.size(); ++row) {
@@ -97,7 +98,7 @@ void FrameMaker::add_particles(render::Frame& frame, const sim::RunFrame& state)
   const char* names[] = {"blood", "solids", "walls"};
   for (int slot = 0; slot < 3; ++slot) {
     frame.particles[slot].name = names[slot];
-    frame.particles[slot].radius = static_cast<float>(drawn_radius * run_.header().spacing);
+    frame.particles[slot].radius = static_cast<float>((run_.header().dimension == 2 ? flat_radius : drawn_radius) * run_.header().spacing);
   }
   frame.particles[fluid_set].fields.resize(fluid_fields.size());
   frame.particles[solid_set].fields.resize(solid_fields.size());
@@ -158,6 +159,7 @@ void FrameMaker::add_words(render::Frame& frame, const sim::RunFrame& state, std
   frame.subtitle = settings_text(header);
   frame.time = state.time;
   if (header.statics) frame.time_text = "load " + std::to_string(std::lround(100 * state.time / std::max(header.end, 1e-300))) + " %";
+  if (!header.valve) frame.caption.clear();
   frame.readouts = make_readouts(header, series_, times_.at(index));
   frame.plots = plots_;
   constexpr std::size_t shown = 2;

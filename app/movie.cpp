@@ -83,6 +83,25 @@ std::vector<std::size_t> states_to_hold(const sim::RunReader& run, const std::ve
           nearest_frame(times, when[static_cast<std::size_t>(closed - area.begin())])};
 }
 
+// The first frame's plots, with the curves of the others in those where each run has a single one.
+void compare_plots(std::vector<render::Frame>& frames) {
+  static const std::vector<render::Color> colors = {
+      {0.10f, 0.32f, 0.66f}, {0.85f, 0.45f, 0.05f}, {0.10f, 0.50f, 0.40f}, {0.55f, 0.20f, 0.55f}};
+  for (std::size_t p = 0; p < frames.front().plots.size(); ++p) {
+    render::Plot& plot = frames.front().plots[p];
+    if (plot.curves.size() != 1) continue;
+    plot.curves[0].label = frames.front().title;
+    plot.curves[0].color = colors[0];
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+      if (p >= frames[i].plots.size() || frames[i].plots[p].label != plot.label || frames[i].plots[p].curves.size() != 1) continue;
+      render::Curve curve = frames[i].plots[p].curves[0];
+      curve.label = frames[i].title;
+      curve.color = colors[i % colors.size()];
+      plot.curves.push_back(curve);
+    }
+  }
+}
+
 // All runs of a job, opened, with common ranges.
 struct Runs {
   std::vector<sim::RunReader> readers;
@@ -114,8 +133,15 @@ struct Runs {
     std::vector<render::Frame> frames;
     for (const FrameMaker& maker : makers) {
       frames.push_back(maker.make(nearest_frame(maker.times(), makers.front().times()[index])));
-      for (render::Panel& panel : frames.back().panels) panel.title = frames.back().title + (panel.title.empty() ? "" : ": " + panel.title);
+      render::Frame& frame = frames.back();
+      for (render::Panel& panel : frame.panels) {
+        panel.title = frame.title + (panel.title.empty() ? "" : ": " + panel.title);
+        panel.note = frame.subtitle;
+      }
+      frame.subtitle.clear();  // it stands in the panels, and so do the numbers that differ: in the plots
+      frame.readouts.clear();
     }
+    compare_plots(frames);
     return render::side_by_side(frames);
   }
 };

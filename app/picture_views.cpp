@@ -122,6 +122,20 @@ void add_walls(render::Panel& panel, const render::Frame& frame, render::Particl
   panel.particles.push_back({wall_set, styled("", false, stone), shape});
 }
 
+// The wall's largest distance from the valve's axis between annulus and commissures, m; without a wall, a third more than the annulus.
+float widest_at_valve(const render::Surface& lumen, const sim::ValveFrame& valve) {
+  double widest = 1.1 * valve.annulus_radius;
+  bool found = false;
+  for (const Eigen::Vector3f& vertex : lumen.vertices) {
+    const Eigen::Vector3d from = vertex.cast<double>() - valve.annulus_center;
+    const double height = from.dot(valve.axis), distance = (from - height * valve.axis).norm();
+    if (height < 0 || height > valve.commissure_height || distance > 3 * valve.annulus_radius) continue;  // farther: another vessel
+    widest = std::max(widest, distance);
+    found = true;
+  }
+  return static_cast<float>(found ? widest : 1.33 * valve.annulus_radius);
+}
+
 // Views of a valve: lengths in multiples of the annulus radius.
 render::Panel valve_panel(const View& view, const render::Frame& frame, const sim::ValveFrame& valve, const PictureChoice& choice,
                           const Eigen::Vector3f& toward_leaflet) {
@@ -138,8 +152,9 @@ render::Panel valve_panel(const View& view, const render::Frame& frame, const si
                      : view.view == "from_aorta"     ? render::StandardView::from_aorta
                      : view.view == "from_ventricle" ? render::StandardView::from_ventricle
                                                      : render::StandardView::short_axis;
+  const float reach = widest_at_valve(frame.surfaces[0], valve);
   panel.camera =
-      render::standard_camera(which, middle, axis, side, along ? 3.4f * radius : 3.0f * radius, along ? 4.2f * radius : 3.0f * radius);
+      render::standard_camera(which, middle, axis, side, along ? 2.5f * reach : 2.3f * reach, along ? 4.2f * radius : 2.3f * reach);
   if (along && blood) panel.clip = render::ClipPlane{middle, panel.camera.backward};
   if (view.view == "from_aorta") panel.clip = render::ClipPlane{annulus + (height + 0.15f * radius) * axis, axis};
   if (view.view == "from_ventricle") panel.clip = render::ClipPlane{annulus - 0.5f * radius * axis, -axis};
@@ -152,10 +167,7 @@ render::Panel valve_panel(const View& view, const render::Frame& frame, const si
   }
   add_leaflets(panel, frame, view.field, cut_leaflets);
   if (cut_leaflets) add_blood(panel, frame, view.field, choice);
-  panel.directions = {{"to aorta", axis, render::Color(0.70f, 0.15f, 0.15f)},
-                      {"x", Eigen::Vector3f::UnitX(), stone * 0.8f},
-                      {"y", Eigen::Vector3f::UnitY(), stone * 0.8f},
-                      {"z", Eigen::Vector3f::UnitZ(), stone * 0.8f}};
+  panel.directions = {{"to aorta", axis, render::Color(0.70f, 0.15f, 0.15f)}};
   panel.legends = {scale_slot(view.field)};
   panel.title = panel_title(view, frame);
   return panel;

@@ -107,6 +107,7 @@ struct Direction {
 // One picture within the frame.
 struct Panel {
   std::string title;
+  std::string note;  // beneath the title: what differs between panels
   Camera camera;
   std::optional<ClipPlane> clip;
   std::vector<ParticleLayer> particles;

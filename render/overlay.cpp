@@ -66,8 +66,8 @@ Eigen::Vector2f others_in_picture(const Panel& panel, const Projection& projecti
 }
 
 void draw_orientation(Image& image, const Rect& place, const Panel& panel, const Projection& projection, Lettering& lettering) {
-  const float em = as_float(lettering.size), arm = 2.1f * em;
-  const float x = as_float(place.x + place.width) - 4.6f * em, y = as_float(place.y + place.height) - 3.3f * em;
+  const float em = as_float(lettering.size), arm = 1.9f * em;
+  const float x = as_float(place.x + place.width) - 4.6f * em, y = as_float(place.y + place.height) - 2.5f * em;
   std::vector<std::pair<float, const Direction*>> far_to_near;
   for (const Direction& direction : panel.directions)
     far_to_near.emplace_back((projection.view.block<3, 3>(0, 0) * direction.vector).z(), &direction);
@@ -81,7 +81,10 @@ void draw_orientation(Image& image, const Rect& place, const Panel& panel, const
       for (const float side : {-0.6f, 0.6f})
         stroke(image, tip_x, tip_y, tip_x - head * (ux - side * uy), tip_y - head * (uy + side * ux), 0.16f * em, direction->color);
     } else {
-      disc(image, x, y, 0.22f * em, direction->color);
+      disc(image, x, y, 0.32f * em, direction->color);  // an arrow seen from its point, or from its feathers
+      if (toward_eye < 0)
+        for (const float side : {-0.16f, 0.16f})
+          stroke(image, x - 0.16f * em, y - side * em, x + 0.16f * em, y + side * em, 0.09f * em, paper);
     }
     const int size = lettering.size * 8 / 10;
     const float wide = lettering.regular.width(direction->name, size);
@@ -155,7 +158,7 @@ void draw_plot(Image& image, const Rect& place, const Plot& plot, const std::opt
   if (span.last <= span.first) return;
   const int small = lettering.size * 8 / 10;
   const float em = as_float(lettering.size);
-  const float left = as_float(place.x) + 3.6f * em, right = as_float(place.x + place.width) - 1.2f * em;
+  const float left = as_float(place.x) + 3.6f * em, right = as_float(place.x + place.width) - 1.7f * em;
   const float top = as_float(place.y) + 1.9f * em, bottom = as_float(place.y + place.height) - 1.7f * em;
   const double pad = 0.06 * (span.highest - span.lowest), low = span.lowest - pad, high = span.highest + pad;
   const auto to_x = [&](double t) { return left + static_cast<float>((t - span.first) / (span.last - span.first)) * (right - left); };
@@ -176,6 +179,7 @@ void draw_plot(Image& image, const Rect& place, const Plot& plot, const std::opt
   for (const Curve& curve : plot.curves) {
     if (curve.time.empty()) continue;
     draw_curve(image, curve, to_x, to_y, std::max(1.5f, 0.11f * em));
+    if (curve.label.empty()) continue;
     fill(image, x, top - 0.95f * em, 1.1f * em, std::max(2.0f, 0.16f * em), curve.color);
     x += 1.4f * em;
     x += lettering.regular.draw(image, x, top - 0.6f * em, small, curve.label, ink) + em;
@@ -274,6 +278,7 @@ void draw_panel_overlay(Image& image, const Rect& place, const Frame& frame, con
     fill(image, as_float(place.x) + 0.7f * em, as_float(place.y) + 0.35f * em, wide + 0.6f * em, 1.5f * em, paper, 0.6f);
     lettering.bold.draw(image, as_float(place.x) + em, as_float(place.y) + 1.5f * em, lettering.size, panel.title, ink);
   }
+  if (!panel.note.empty()) draw_name(image, as_float(place.x) + em, as_float(place.y) + 2.9f * em, panel.note, faint, lettering);
   const int count = static_cast<int>(panel.legends.size());
   for (int n = 0; n < count; ++n)
     draw_color_bar(image, color_bar_place(place, n, count, lettering.size), frame.scales[panel.legends[n]], lettering);

@@ -160,9 +160,12 @@ void PanelPainter::Parts::draw_lines(const Frame& frame, const Panel& panel, con
     const Color dark = 0.35f * layer.style.color;
     if (layer.rim) {
       const DrawnMesh mesh = drawn_mesh({surface.name, surface.vertices, surface.triangles, {}, 0, surface.smoothing}, -1);
-      std::vector<std::array<Eigen::Vector3f, 2>> pairs;
-      for (const auto& [a, b] : border_edges(mesh.triangles)) pairs.push_back({mesh.positions[a], mesh.positions[b]});
-      lines.draw(segments(pairs, dark), width(2.5f), lift + surface.thickness, false, projection);
+      std::vector<std::array<Eigen::Vector3f, 2>> pairs;  // along both edges of a skin's rim
+      for (const float side : {0.5f, -0.5f})
+        for (const auto& [a, b] : border_edges(mesh.triangles))
+          pairs.push_back({mesh.positions[a] + side * surface.thickness * mesh.normals[a],
+                           mesh.positions[b] + side * surface.thickness * mesh.normals[b]});
+      lines.draw(segments(pairs, dark), width(2.5f), lift, false, projection);
     }
     if (layer.section && panel.clip) {
       const auto cut = section(surface.vertices, surface.triangles, *panel.clip);

@@ -89,7 +89,7 @@ TEST(Overlay, plot_cursor_moves_with_time) {
     return best;
   };
   const int early = darkest_column(0.2), late = darkest_column(0.6);
-  const float left = 3.6f * 20, right = 800 - 1.2f * 20;  // the plot's frame
+  const float left = 3.6f * 20, right = 800 - 1.7f * 20;  // the plot's frame
   EXPECT_NEAR(early, left + 0.25f * (right - left), 3);
   EXPECT_NEAR(late, left + 0.75f * (right - left), 3);
 }
