@@ -241,7 +241,7 @@ void add_wall_surfaces(std::vector<ParticleSet>& sets, const std::vector<PlacedB
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (bodies[b].matter != Matter::wall) continue;
     const auto feet =
-        exposed_surface(sets[b].position, solids, bodies[b].shape, cells.lattice, reachable, 6 * options.spacing, options.spacing);
+        exposed_surface(sets[b].position, solids, bodies[b].shape, cells.lattice, fluid, reachable, 6 * options.spacing, options.spacing);
     ParticleSet kept;
     for (std::size_t i = 0; i < feet.size(); ++i) {
       if (feet[i].depth > options.wall_depth_limit) continue;

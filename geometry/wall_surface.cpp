@@ -45,9 +45,9 @@ int cell_along(const std::vector<double>& edge, double at) {
   return std::clamp(int(above - edge.begin()) - 1, 0, int(edge.size()) - 2);
 }
 
-// Arm from `point` to the centre of the nearest reachable cell; false where none is near.
-bool arm_to_reachable(const Vector3d& point, const PlacementLattice& lattice, const std::vector<std::uint8_t>& reachable,
-                      const std::vector<Cell>& offsets, double reach, Vector3d& arm) {
+// Arm from `point` to the centre of the nearest wanted cell; false where none is near.
+bool arm_to_nearest(const Vector3d& point, const PlacementLattice& lattice, const std::vector<std::uint8_t>& wanted,
+                    const std::vector<Cell>& offsets, double reach, Vector3d& arm) {
   Cell home;
   for (int k = 0; k < 3; ++k) home[k] = cell_along(lattice.edge[k], point[k]);
   double best = reach * reach, last_ring = std::numeric_limits<double>::infinity();
@@ -56,7 +56,7 @@ bool arm_to_reachable(const Vector3d& point, const PlacementLattice& lattice, co
     const double ring = std::sqrt(offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]);
     if (ring > last_ring) break;
     Cell cell;
-    if (!lattice.neighbor(home, offset, cell) || !reachable[lattice.index(cell[0], cell[1], cell[2])]) continue;
+    if (!lattice.neighbor(home, offset, cell) || !wanted[lattice.index(cell[0], cell[1], cell[2])]) continue;
     const Vector3d there = lattice.periodic.nearest_image(lattice.center(cell) - point);
     if (there.squaredNorm() >= best * (1 - 1e-9)) continue;
     best = there.squaredNorm();
@@ -128,15 +128,16 @@ std::vector<std::uint8_t> reachable_cells(const PlacementLattice& lattice, const
 }
 
 std::vector<SurfaceFoot> exposed_surface(const std::vector<Vector3d>& points, const std::vector<const Shape*>& solids, const Shape& own,
-                                         const PlacementLattice& lattice, const std::vector<std::uint8_t>& reachable, double reach,
-                                         double spacing) {
+                                         const PlacementLattice& lattice, const std::vector<std::uint8_t>& fluid,
+                                         const std::vector<std::uint8_t>& reachable, double reach, double spacing) {
   const std::vector<Cell> offsets = offsets_by_distance(int(std::ceil(reach / spacing)) + 1, lattice.dimension);
   const Solids all{solids, lattice};
   std::vector<SurfaceFoot> feet(points.size());
 #pragma omp parallel for schedule(dynamic, 256)
   for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(points.size()); ++i) {
     Vector3d arm;
-    if (arm_to_reachable(points[i], lattice, reachable, offsets, reach, arm)) {
+    if (arm_to_nearest(points[i], lattice, fluid, offsets, reach, arm) ||
+        arm_to_nearest(points[i], lattice, reachable, offsets, reach, arm)) {
       feet[i] = foot_towards(points[i], arm, all, spacing);
       continue;
     }

@@ -20,10 +20,10 @@ struct SurfaceFoot {
   Eigen::Vector3d normal;  // unit, out of the wall
 };
 
-// For each point inside the union of `solids`: depth below, and normal of, the nearest surface point next to a reachable cell; farther
-// from all of these than `reach` (m), of the nearest surface of `own`.
+// For each point inside the union of `solids`: depth below, and normal of, the nearest surface point towards a cell of `fluid`; where none
+// is within `reach` (m), towards a `reachable` cell; where there is none either, of the nearest surface of `own`.
 std::vector<SurfaceFoot> exposed_surface(const std::vector<Eigen::Vector3d>& points, const std::vector<const Shape*>& solids,
-                                         const Shape& own, const PlacementLattice& lattice, const std::vector<std::uint8_t>& reachable,
-                                         double reach, double spacing);
+                                         const Shape& own, const PlacementLattice& lattice, const std::vector<std::uint8_t>& fluid,
+                                         const std::vector<std::uint8_t>& reachable, double reach, double spacing);
 
 }  // namespace geometry
