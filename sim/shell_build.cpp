@@ -14,6 +14,7 @@ namespace {
 constexpr double kernel_radius = 2.1;   // of the body's spacing
 constexpr double near_distance = 1.35;  // of the spacing: bonds, and which rows lie at a clamp's face
 constexpr double ridge = 1e-4;          // on second derivatives (numerics-elastic.md 3(ii))
+constexpr double well_posed = 5e-3;     // least eigenvalue of the fit's moments over the sum of weights
 constexpr double same_sheet = 0.3;      // smallest cosine between normals of neighbours: folds are not bridged
 
 template <int D>
@@ -106,7 +107,7 @@ void gather(const ShellElasticity<D>& shells, const ShellBody& body, const Point
 
 // M = sum w m m^T + ridge; false where the neighbours do not determine the fit.
 template <int D>
-bool invert_moments(const ShellElasticity<D>& shells, const ShellBody& body, std::int32_t i, Neighborhood<D>& near) {
+bool invert_moments(const ShellElasticity<D>& shells, const ShellBody& body, std::int32_t i, Neighborhood<D>& near, double stiffening) {
   constexpr int terms = ShellElasticity<D>::terms, linear = D - 1;
   if (static_cast<int>(near.rows.size()) < terms) return false;
   TermMatrix<D> moments = TermMatrix<D>::Zero();
@@ -117,41 +118,48 @@ bool invert_moments(const ShellElasticity<D>& shells, const ShellBody& body, std
     sum += near.weight[k];
   }
   const Eigen::SelfAdjointEigenSolver<TermMatrix<D>> eigen(moments);
-  if (eigen.eigenvalues()[0] < 5e-3 * sum) return false;
-  for (int t = linear; t < terms; ++t) moments(t, t) += ridge * sum;
+  if (stiffening == ridge && eigen.eigenvalues()[0] < well_posed * sum) return false;
+  for (int t = linear; t < terms; ++t) moments(t, t) += stiffening * sum;
   near.inverse = moments.inverse();
   return true;
 }
 
-// The neighbours that determine the fit: the smallest radius of 2.1, 2.3, ... spacings that does.
+// Turns the normal until the fitted surface has no slope against it. False where that does not settle.
 template <int D>
-void find_neighborhood(const ShellElasticity<D>& shells, const ShellBody& body, const std::string& name, const PointGrid<D>& grid,
-                       std::int32_t i, Neighborhood<D>& near) {
-  for (double factor = kernel_radius; factor < 4.2; factor += 0.2) {
-    gather(shells, body, grid, i, factor * body.spacing, near);
-    if (invert_moments(shells, body, i, near)) return;
-  }
-  throw std::invalid_argument("shell body '" + name + "': the particle at (" + std::to_string(shells.rest_position[i].x()) + ", " +
-                              std::to_string(shells.rest_position[i].y()) +
-                              ", ...) m has too few neighbours to define a surface; use a smaller spacing or a larger sheet");
-}
-
-// Turns the normal until the fitted surface has no slope against it; neighbours are chosen on the way.
-template <int D>
-void align_with_surface(ShellElasticity<D>& shells, const ShellBody& body, const Vector<D>& fibre, std::int32_t i, Neighborhood<D>& near) {
-  for (int iteration = 0; iteration < 50; ++iteration) {
+bool align_with_surface(ShellElasticity<D>& shells, const ShellBody& body, const Vector<D>& fibre, std::int32_t i, Neighborhood<D>& near,
+                        double stiffening) {
+  const Vector<D> start = shells.normal[i];
+  for (int iteration = 0; iteration < 60 && invert_moments(shells, body, i, near, stiffening); ++iteration) {
     Vector<D - 1> slope = Vector<D - 1>::Zero();
     for (std::size_t k = 0; k < near.rows.size(); ++k) {
       const Vector<D> offset = shells.rest_position[near.rows[k]] - shells.rest_position[i];
       const Terms<D> fit = near.inverse * (near.weight[k] * monomials<D>(offset, shells.tangent[i], body.spacing));
       slope += fit.template head<D - 1>() * (offset.dot(shells.normal[i]) / body.spacing);
     }
+    if (slope.norm() < 1e-12) return shells.normal[i].dot(start) > 0.5;
     Vector<D> normal = shells.normal[i];
     for (int a = 0; a < D - 1; ++a) normal -= slope[a] * shells.tangent[i][a];
     shells.normal[i] = normal.normalized();
     shells.tangent[i] = tangents_of(shells.normal[i], fibre);
-    if (slope.norm() < 1e-13 || !invert_moments(shells, body, i, near)) return;
   }
+  shells.normal[i] = start;
+  shells.tangent[i] = tangents_of(start, fibre);
+  return false;
+}
+
+// The neighbours that determine the fit: the smallest radius of 2.1, 2.3, ... spacings that does; in a narrow corner, where none does, a
+// fit that is linear in effect (second derivatives held down by a large ridge).
+template <int D>
+void find_neighborhood(ShellElasticity<D>& shells, const ShellBody& body, const std::string& name, const Vector<D>& fibre,
+                       const PointGrid<D>& grid, std::int32_t i, Neighborhood<D>& near) {
+  for (double stiffening : {ridge, 1.0, 100.0})
+    for (double factor = kernel_radius; factor < 3.4; factor += 0.2) {
+      gather(shells, body, grid, i, factor * body.spacing, near);
+      if (align_with_surface(shells, body, fibre, i, near, stiffening)) return;
+    }
+  throw std::invalid_argument("shell body '" + name + "': the particle at (" + std::to_string(shells.rest_position[i].x()) + ", " +
+                              std::to_string(shells.rest_position[i].y()) +
+                              ", ...) m has too few neighbours to define a surface; use a smaller spacing or a larger sheet");
 }
 
 // Pairs of one particle: g and q of the fit. A held particle looks only towards the free side (direction nu): its stretch along nu is that
@@ -283,8 +291,7 @@ void append_body(ShellElasticity<D>& shells, const SceneDescription<D>& descript
   Neighborhood<D> near;
   for (std::int32_t i = body.first; i < body.first + body.count; ++i) {
     const Vector<D>& fibre = fibres[i - body.first];
-    find_neighborhood(shells, body, source.name, grid, i, near);
-    align_with_surface(shells, body, fibre, i, near);
+    find_neighborhood(shells, body, source.name, fibre, grid, i, near);
     for (int a = 0; a < D - 1; ++a) shells.fibre[i][a] = fibre.dot(shells.tangent[i][a]);
     if (shells.fibre[i].norm() > 1e-6) shells.fibre[i].normalize();
     append_pairs(shells, body, i, near);
