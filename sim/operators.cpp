@@ -94,7 +94,7 @@ void velocity_gradients(const Scene<D>& scene, const State<D>& state, Workspace<
         sum.noalias() += c * (state.velocity[j] - state.velocity[i]) * r.transpose();
       } else {
         const Vector<D>& normal = work.boundary_normal[j];
-        const double t = fluid_fraction<D>(r, normal, scene.description.particles.depth[j]);
+        const double t = fluid_fraction(scene, work, r, j);
         Vector<D> jump = work.boundary_velocity[j] - state.velocity[i];
         const Vector<D> slip = jump - jump.dot(normal) * normal;
         const double speed = slip.norm();

@@ -10,14 +10,21 @@ namespace sim {
 
 // The part of the way from a fluid particle to a boundary particle that lies in the fluid: 1 for a shell (its particles lie on the
 // surface), d_f / (d_f + d_b) for a wall or solid of which the particle lies d_b below the true surface. r: from fluid to boundary
-// particle; normal: unit, into the fluid. Seen from behind the surface's plane (round a corner, or the far face of a thin wall) the surface
-// is taken to be d_b away in the direction of the fluid particle. Never below 0.2, so that a fluid particle on the surface keeps a finite
-// sample.
+// particle; normal: unit, into the fluid; back_depth: distance below the wall's far face, 0 = none near. Seen from behind the surface's
+// plane (round a corner, or the far face of a thin wall) the surface is taken to be d_b away in the direction of the fluid particle. Never
+// below 0.2, so that a fluid particle on the surface keeps a finite sample.
 template <int D>
-double fluid_fraction(const Vector<D>& r, const Vector<D>& normal, double depth) {
+double fluid_fraction(const Vector<D>& r, const Vector<D>& normal, double depth, double back_depth = 0) {
   if (depth <= 0) return 1;
-  const double across = -r.dot(normal);
+  double across = -r.dot(normal);
+  if (across < 0 && back_depth > 0) across = -across, depth = back_depth;
   return std::clamp(1.0 - depth / (across > depth ? across : std::max(r.norm(), 1e-12)), 0.2, 1.0);
+}
+
+// The same for the link from fluid to boundary row j.
+template <int D>
+double fluid_fraction(const Scene<D>& scene, const Workspace<D>& work, const Vector<D>& r, std::int32_t j) {
+  return fluid_fraction<D>(r, work.boundary_normal[j], scene.description.particles.depth[j], scene.back_depth[j]);
 }
 
 // Whether the port gives its pressure (else its speed).

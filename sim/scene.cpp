@@ -8,6 +8,7 @@
 #include "sim/ports.h"
 #include "sim/sides.h"
 #include "sim/step.h"
+#include "sim/walls.h"
 #include "sim/workspace.h"
 
 namespace sim {
@@ -84,6 +85,7 @@ Scene<D> make_scene(SceneDescription<D> description) {
   scene.fluid_particle_volume = std::pow(description.spacing, D);
   scene.description = std::move(description);
   count_rows(scene);
+  scene.back_depth = far_faces(scene);
   const SceneDescription<D>& d = scene.description;
   if (d.gravity && d.gravity->norm() > 0) scene.gravity = Gravity<D>{*d.gravity};
   if (fluid && viscous) scene.viscosity = Viscosity{shear_dependent, !shells};

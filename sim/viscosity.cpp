@@ -11,12 +11,28 @@ namespace {
 
 double pair_viscosity(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0; }
 
+// Viscosity between fluid particle i and the surface before boundary particle j, a part t of the way r: where it depends on the shear
+// rate, at the mean rate |slip| / height of the layer between them, which is not the particle's own (beside a wall blood thins steeply).
+template <int D>
+double wall_viscosity(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, Index i, std::int32_t j, const Vector<D>& r,
+                      double t) {
+  if (!scene.viscosity->shear_dependent) return work.viscosity[i];
+  const Vector<D>& normal = work.boundary_normal[j];
+  const Vector<D> jump = state.velocity[i] - work.boundary_velocity[j];
+  const double height = t * std::max(std::abs(r.dot(normal)), 0.5 * r.norm());
+  const double rate = (jump - jump.dot(normal) * normal).norm() / height;
+  return viscosity(scene.description.bodies[state.body[i]].fluid.rheology, rate, scene.description.scheme.viscosity_limit);
+}
+
 // Flux coefficient of the link i-j: mu 2d/(lambda n0) w, times 1/fraction where the no-slip surface lies before the boundary particle.
 template <int D>
-double link_coefficient(const Scene<D>& scene, const Workspace<D>& work, Index i, std::int32_t j, const Vector<D>& r, double w) {
+double link_coefficient(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, Index i, std::int32_t j, const Vector<D>& r,
+                        double w) {
   const double k = scene.lattice.laplacian_factor() * w;
   if (j >= scene.first_fluid) return k * pair_viscosity(work.viscosity[i], work.viscosity[j]);
-  return k * work.viscosity[i] / fluid_fraction<D>(r, work.boundary_normal[j], scene.description.particles.depth[j]);
+  const double t = fluid_fraction(scene, work, r, j);
+  const double grip = work.grip.empty() || state.kind[j] != Kind::wall ? 1.0 : work.grip[i];
+  return grip * k * wall_viscosity(scene, state, work, i, j, r, t) / t;
 }
 
 template <int D>
@@ -60,7 +76,7 @@ void add_laplacian_correction(const Scene<D>& scene, const State<D>& state, Work
     const std::int64_t first = work.neighbors.start[i], last = work.neighbors.start[i + 1];
     auto sample = [&](std::int64_t k, std::int32_t j, Vector<D>& r) {
       r = scene.space.difference(state.position[i], state.position[j]);
-      return j >= scene.first_fluid ? 1.0 : fluid_fraction<D>(r, work.boundary_normal[j], scene.description.particles.depth[j]);
+      return j >= scene.first_fluid ? 1.0 : fluid_fraction(scene, work, r, j);
       (void)k;
     };
     Square moment = Square::Zero();
@@ -83,9 +99,9 @@ void add_laplacian_correction(const Scene<D>& scene, const State<D>& state, Work
       const double t = sample(k, j, r);
       const double consistent = w * z.dot(quadratic_monomials<D>(t / l0 * r));
       const bool fluid = j >= scene.first_fluid;
-      const double mu = fluid ? pair_viscosity(work.viscosity[i], work.viscosity[j]) : work.viscosity[i];
+      const double mu = fluid ? pair_viscosity(work.viscosity[i], work.viscosity[j]) : wall_viscosity(scene, state, work, i, j, r, t);
       const Vector<D> jump = (fluid ? state.velocity[j] : work.boundary_velocity[j]) - state.velocity[i];
-      sum += (mu * consistent - link_coefficient<D>(scene, work, i, j, r, w)) * jump;
+      sum += (mu * consistent - link_coefficient<D>(scene, state, work, i, j, r, w)) * jump;
     }
     work.acceleration[i] += sum / scene.density[state.body[i]];
   }
@@ -119,7 +135,7 @@ SolveReport solve_viscosity(const Scene<D>& scene, const State<D>& state, Worksp
       a.value[e] = 0;
       if (w == 0 || given) continue;
       const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
-      const double c = link_coefficient<D>(scene, work, i, j, r, w);
+      const double c = link_coefficient<D>(scene, state, work, i, j, r, w);
       diagonal += c;
       if (j < first)
         source += c * work.boundary_velocity[j];
@@ -158,7 +174,7 @@ SolveReport solve_viscosity(const Scene<D>& scene, const State<D>& state, Worksp
         const double w = work.link_weight[k];
         if (w == 0 || state.kind[i] != Kind::fluid) continue;
         const Vector<D> r = scene.space.difference(state.position[i], state.position[s]);
-        const double c = link_coefficient<D>(scene, work, i, static_cast<std::int32_t>(s), r, w);
+        const double c = link_coefficient<D>(scene, state, work, i, static_cast<std::int32_t>(s), r, w);
         boundary_force[s] += scene.fluid_particle_volume * c * (state.velocity[i] + dt * work.acceleration[i] - work.boundary_velocity[s]);
       }
   }

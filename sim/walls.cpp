@@ -83,7 +83,36 @@ void boundary_surfaces(const Scene<D>& scene, const State<D>& state, Workspace<D
   }
 }
 
+template <int D>
+std::vector<double> far_faces(const Scene<D>& scene) {
+  const InitialParticles<D>& particles = scene.description.particles;
+  const std::size_t n = static_cast<std::size_t>(scene.first_fluid);
+  std::vector<double> result(n, 0);
+  if (scene.wall_count == 0) return result;
+  std::vector<Search> search(n, Search::none);
+  std::vector<std::uint8_t> is_fluid(n, 0);
+  for (std::size_t i = 0; i < n; ++i)
+    if (particles.kind[i] == Kind::wall) search[i] = Search::all;
+  Neighbors neighbors;
+  CellGrid<D> grid;
+  find_neighbors<D>(neighbors, grid, std::span(particles.position).first(n), search, is_fluid, scene.description.domain,
+                    1.5 * scene.lattice.radius);
+  const double beside = 0.75 * scene.lattice.spacing;
+#pragma omp parallel for schedule(dynamic, 256)
+  for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(n); ++i)
+    for (std::int32_t j : neighbors.of(static_cast<std::size_t>(i))) {
+      if (particles.kind[j] != Kind::wall || particles.normal[i].dot(particles.normal[j]) > -0.7) continue;
+      const Vector<D> face =
+          scene.space.difference(particles.position[i], particles.position[j]) + particles.depth[j] * particles.normal[j];
+      const double away = -face.dot(particles.normal[i]);
+      if (away <= 0 || (face + away * particles.normal[i]).norm() > beside) continue;
+      if (result[i] == 0 || away < result[i]) result[i] = away;
+    }
+  return result;
+}
+
 #define INSTANTIATE(D)                                          \
+  template std::vector<double> far_faces(const Scene<D>&);      \
   template void move_walls(const Scene<D>&, State<D>&, double); \
   template void boundary_surfaces(const Scene<D>&, const State<D>&, Workspace<D>&);
 INSTANTIATE(2)

@@ -15,4 +15,9 @@ void move_walls(const Scene<D>& scene, State<D>& state, double dt);
 template <int D>
 void boundary_surfaces(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
 
+// Distance of every row below first_fluid to the far face of its wall, opposite to its own normal, m; 0 where no face lies within 1.5
+// kernel radii. So that fluid on either side of a wall of few layers sees the face it wets. At the start; walls are rigid.
+template <int D>
+std::vector<double> far_faces(const Scene<D>& scene);
+
 }  // namespace sim
