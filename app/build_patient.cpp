@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "app/assets.h"
 #include "app/case_parts.h"
@@ -172,7 +173,7 @@ CaseParticles place_patient(const SceneFile& scene) {
       (scene.ports[k].port.name == "ventricle" ? frame.ventricle_port : frame.aorta_port) = static_cast<std::int32_t>(k);
     result.valve = frame;
     result.lumen = vessel.lumen;
-    for (const auto* warnings : {&vessel.warnings, &valve.warnings, &placed.warnings})
+    for (const std::vector<std::string>* warnings : {&vessel.warnings, &std::as_const(valve).warnings, &std::as_const(placed).warnings})
       result.warnings.insert(result.warnings.end(), warnings->begin(), warnings->end());
     result.seconds = placed.seconds;
   } catch (const SceneError&) {

@@ -18,10 +18,10 @@ struct Options {
 };
 
 // The scene that a run file was made from; its relative paths start where they started then.
-SceneFile scene_of_run(const sim::RunHeader& header, const std::vector<std::string>& settings) {
+SceneFile scene_of_run(const std::filesystem::path& run, const sim::RunHeader& header, const std::vector<std::string>& settings) {
   std::vector<std::string> all = header.settings;
   all.insert(all.end(), settings.begin(), settings.end());
-  return parse_scene_text(header.scene_text, std::filesystem::path(header.scene_folder) / header.scene_name, all);
+  return parse_scene_text(header.scene_text, run.parent_path() / header.scene_folder / header.scene_name, all);
 }
 
 nlohmann::json compared(const sim::RunReader& before, const sim::RunReader& after) {
@@ -42,7 +42,7 @@ int replay(const Options& options) {
     throw SceneError(error.what());
   }
   if (options.settings.empty()) throw SceneError("cusp replay: nothing is changed; give --set KEY=VALUE");
-  const SceneFile scene = scene_of_run(before->header(), options.settings);
+  const SceneFile scene = scene_of_run(std::filesystem::absolute(options.run), before->header(), options.settings);
   RunCaseOptions chosen;
   const std::filesystem::path old(options.run);
   chosen.output = options.output.empty() ? old.parent_path() / (old.stem().string() + "_replay.h5") : std::filesystem::path(options.output);

@@ -17,6 +17,14 @@ sim::RunSurface surface_of(const geometry::TriangleMesh& mesh) {
   return surface;
 }
 
+// The scene's folder as seen from the run file, so that both can be moved together and no absolute path is stored.
+std::string folder_from(const std::filesystem::path& run, const std::filesystem::path& scene) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::weakly_canonical(fs::absolute(scene)).parent_path(),
+                 base = fs::weakly_canonical(fs::absolute(run)).parent_path();
+  return folder.lexically_relative(base).string();
+}
+
 }  // namespace
 
 sim::RunResult run_case(const SceneFile& scene_file, const RunCaseOptions& options) {
@@ -28,7 +36,7 @@ sim::RunResult run_case(const SceneFile& scene_file, const RunCaseOptions& optio
     setup.header.program_version = CUSP_VERSION;
     setup.header.scene_text = scene_file.text, setup.header.settings = scene_file.settings;
     setup.header.scene_name = scene_file.path.filename().string();
-    setup.header.scene_folder = scene_file.path.parent_path().string();
+    setup.header.scene_folder = folder_from(options.output, scene_file.path);
     setup.header.lumen = surface_of(built.lumen);
     setup.warnings = built.warnings;
     if (!options.quiet)

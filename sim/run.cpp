@@ -137,6 +137,7 @@ struct Running {
         if (reader.header().columns != complete_header(scene, setup.header).columns)
           throw std::runtime_error(setup.file.string() + ": was written for another scene; run it again without --continue");
       }
+      book.next_output = output_time(book.rows);  // the end may have been moved
       writer = RunWriter::resume(setup.file, book);
       return;
     }
