@@ -51,7 +51,7 @@ void moment_matrices(const Scene<D>& scene, const State<D>& state, Workspace<D>&
         boundary.noalias() += c * r * r.transpose();
       }
     }
-    const bool isolated = work.number_density[i] < 0.6;
+    const bool isolated = work.number_density[i] < 0.6 || (scene.sheet && work.support[i] < 0.3);
     work.velocity_inverse[i] = isolated ? Tensor<D>::Identity().eval() : floored_inverse<D>(fluid + boundary, 0.3);
     if (work.surface[i] == 1) {  // the surface, half a spacing ahead, is a sample of the pressure (see pressure_gradients)
       const double ahead = work.surface_outward[i].norm();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/rheology.h"
+
 namespace sim {
 namespace {
 
@@ -97,10 +99,22 @@ void open_ports(const Scene<D>& scene, State<D>& state) {
 
 namespace {
 
-// Speed of each particle of a port whose pressure is given: the blood's own beside it, layer by layer outward, along the port's normal and
-// never against the mean flow. `sheet` holds the port's rows by increasing height.
+// How far the particles resolve the profile at a port: 1 at a small cell Reynolds number u l0/nu, 0 at a large one, where the boundary
+// layer is thinner than a particle and the port's layers move as one sheet.
 template <int D>
-void extrapolate_speed(const Scene<D>& scene, State<D>& state, const Workspace<D>& work, const Port<D>& port, double mean,
+double resolved_profile(const Scene<D>& scene, double speed) {
+  double kinematic = 0;
+  for (const auto& body : scene.description.bodies)
+    if (body.kind == Kind::fluid) kinematic = std::max(kinematic, viscosity(body.fluid.rheology, 100.0, 1.0) / body.fluid.density);
+  const double reynolds = std::abs(speed) * scene.description.spacing / std::max(kinematic, 1e-300);
+  return 1 / (1 + reynolds * reynolds / 100);
+}
+
+// Speed of each particle of a port whose pressure is given: the blood's own beside it, layer by layer outward, along the port's normal and
+// never against the mean flow; `local` in [0, 1] is how much of the local difference from the mean speed is kept. `sheet` holds the port's
+// rows by increasing height.
+template <int D>
+void extrapolate_speed(const Scene<D>& scene, State<D>& state, const Workspace<D>& work, const Port<D>& port, double mean, double local,
                        const std::vector<std::pair<double, std::size_t>>& sheet) {
   for (const auto& [height, i] : sheet) {
     double sum = 0, weights = 0;
@@ -113,6 +127,7 @@ void extrapolate_speed(const Scene<D>& scene, State<D>& state, const Workspace<D
     }
     double speed = weights > 0 ? sum / weights : mean;
     if (speed * mean < 0) speed = 0;
+    speed = mean + local * (speed - mean);
     state.velocity[i] = -speed * port.normal;
   }
 }
@@ -153,7 +168,23 @@ void prescribe_ports(const Scene<D>& scene, State<D>& state, const Workspace<D>*
       state.velocity[i] = -speed * port.normal;
       state.pressure[i] = pressure;
     }
-    if (local) extrapolate_speed(scene, state, *work, port, speed, sheet);
+    if (local) extrapolate_speed(scene, state, *work, port, speed, resolved_profile(scene, speed), sheet);
+  }
+}
+
+template <int D>
+void wall_grip(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  work.grip.clear();
+  if (scene.description.ports.empty()) return;
+  work.grip.assign(state.size(), 1.0f);
+  for (const auto& port : scene.description.ports) {
+    const double share = resolved_profile(scene, speed_inside(scene, state, port));
+    for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i) {
+      if (state.kind[i] != Kind::fluid) continue;
+      const double depth = -height_outside(scene, port, state.position[i]) / (layers * scene.description.spacing);
+      if (depth < 0 || depth > 1) continue;
+      work.grip[i] = std::min(work.grip[i], static_cast<float>(share + depth * (1 - share)));
+    }
   }
 }
 
@@ -239,6 +270,7 @@ void remove_escaped(const Scene<D>& scene, State<D>& state) {
   template void open_ports(const Scene<D>&, State<D>&);                                   \
   template void prescribe_ports(const Scene<D>&, State<D>&, const Workspace<D>*, double); \
   template void exchange_through_ports(const Scene<D>&, State<D>&, double);               \
+  template void wall_grip(const Scene<D>&, const State<D>&, Workspace<D>&);               \
   template void remove_escaped(const Scene<D>&, State<D>&);
 INSTANTIATE(2)
 INSTANTIATE(3)

@@ -17,6 +17,10 @@ void open_ports(const Scene<D>& scene, State<D>& state);
 template <int D>
 void prescribe_ports(const Scene<D>& scene, State<D>& state, const Workspace<D>* work, double time);
 
+// work.grip: beside a port (within 3 l0) whose profile the particles do not resolve, blood slips along the wall, as the port's layers do.
+template <int D>
+void wall_grip(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
+
 // After the move: port particles that came in become blood and a new one follows three layers behind; blood that went out becomes port;
 // what lies more than three layers out is removed. Updates port_flow, port_volume, the Windkessel and the ledger.
 template <int D>

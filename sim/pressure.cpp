@@ -93,7 +93,8 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
     if (beside_port) compression = std::max(compression, 0.0);  // what the open end lacks is no deficit
     if (at_surface)  // the surface, where p = 0, lies half a spacing ahead; at least the missing neighbours count
       diagonal += volume * k / rho * std::max(work.surface_outward[i].norm() / (0.5 * scene.lattice.spacing), n0 * std::max(1 - n, 0.0));
-    source += volume * (-work.velocity_gradient[i].trace() / dt - divergence + blend * compression / (dt * dt));
+    const double support = scene.sheet ? work.support[i] : 1.0;
+    source += support * volume * (-work.velocity_gradient[i].trace() / dt - divergence + blend * compression / (dt * dt));
     a.diagonal[u] = diagonal > 0 ? diagonal : 1;
     work.source[u] = diagonal > 0 ? source : 0;
   }

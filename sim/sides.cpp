@@ -195,6 +195,15 @@ void cut_links(const Scene<D>& scene, const State<D>& state, Workspace<D>& work)
     also.insert(also.end(), mine.begin(), mine.end());
   }
   for (const auto& [row, entry] : also) work.link_weight[entry] = 0;
+  work.support.assign(n, 1.0);
+#pragma omp parallel for schedule(static)
+  for (Index a = 0; a < near; ++a) {
+    const Index i = work.near_sheet[a];
+    double visible = 0;
+    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k)
+      if (work.neighbors.index[k] >= scene.first_fluid) visible += work.link_weight[k];
+    work.support[i] = std::clamp((visible / scene.lattice.number_density - 0.25) / 0.25, 0.0, 1.0);
+  }
 }
 
 template <int D>
@@ -205,13 +214,13 @@ void wetted_sides(const Scene<D>& scene, const State<D>& state, Workspace<D>& wo
   auto& wetting = work.wetting;
   wetting.assign(2 * shells, {});
   for (std::int32_t i : work.near_sheet) {
-    if (state.kind[i] != Kind::fluid || work.unknown[i] < 0) continue;
+    if (state.kind[i] != Kind::fluid || work.unknown[i] < 0 || work.support[i] <= 0) continue;
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
       const std::int32_t j = work.neighbors.index[k];
       if (work.link_weight[k] == 0 || state.kind[j] != Kind::shell) continue;
       const double height = scene.space.difference(state.position[j], state.position[i]).dot(work.boundary_normal[j]);
       const std::size_t s = static_cast<std::size_t>(j - first_shell);
-      wetting[2 * s + (height > 0 ? 0 : 1)].push_back({work.unknown[i], work.link_weight[k] * std::abs(height)});
+      wetting[2 * s + (height > 0 ? 0 : 1)].push_back({work.unknown[i], work.support[i] * work.link_weight[k] * std::abs(height)});
     }
   }
   // Dry sides take the mean of their wet mesh neighbours', ring by ring.
@@ -329,11 +338,32 @@ void keep_sides(const Scene<D>& scene, State<D>& state, Workspace<D>& work) {
   state.ledger.deepest_penetration = std::max(state.ledger.deepest_penetration, deepest);
 }
 
+template <int D>
+void stick_in_gaps(const Scene<D>& scene, State<D>& state, const Workspace<D>& work) {
+  const Index near = static_cast<Index>(work.near_sheet.size());
+  std::vector<Vector<D>> mean(near);
+#pragma omp parallel for schedule(dynamic, 64)
+  for (Index a = 0; a < near; ++a) {
+    const Index i = work.near_sheet[a];
+    mean[a] = state.velocity[i];
+    if (work.support[i] >= 1 || state.kind[i] != Kind::fluid) continue;
+    Vector<D> sum = Vector<D>::Zero();
+    double weights = 0;
+    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+      sum += work.link_weight[k] * state.velocity[work.neighbors.index[k]];
+      weights += work.link_weight[k];
+    }
+    if (weights > 0) mean[a] = work.support[i] * state.velocity[i] + (1 - work.support[i]) / weights * sum;
+  }
+  for (Index a = 0; a < near; ++a) state.velocity[work.near_sheet[a]] = mean[a];
+}
+
 #define INSTANTIATE(D)                                                           \
   template SheetGeometry<D> make_sheet_geometry(const ShellElasticity<D>&);      \
   template void cut_links(const Scene<D>&, const State<D>&, Workspace<D>&);      \
   template void wetted_sides(const Scene<D>&, const State<D>&, Workspace<D>&);   \
   template void remember_sides(const Scene<D>&, const State<D>&, Workspace<D>&); \
+  template void stick_in_gaps(const Scene<D>&, State<D>&, const Workspace<D>&);  \
   template void keep_sides(const Scene<D>&, State<D>&, Workspace<D>&);
 INSTANTIATE(2)
 INSTANTIATE(3)

@@ -78,6 +78,7 @@ template <int D>
 void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
   find_neighborhood(scene, state, work);
   prescribe_ports<D>(scene, state, &work, state.time + dt);
+  wall_grip(scene, state, work);
   moment_matrices(scene, state, work);
   velocity_gradients(scene, state, work);
   body_accelerations(scene, state, work);
@@ -106,6 +107,7 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
   if (scene.shells) correct_leaflets(scene, state, work, dt);
   shifting_displacement(scene, state, work, dt);
   advance_fluid(scene, state, work, dt);
+  if (scene.sheet) stick_in_gaps(scene, state, work);
   shift_particles(scene, state, work);
   separate_particles(scene, state, work);
   if (scene.sheet) keep_sides(scene, state, work);

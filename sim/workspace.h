@@ -34,6 +34,7 @@ struct Workspace {
   std::vector<Tensor<D>> pressure_inverse;   // inverse moment matrix over fluid alone
   std::vector<Tensor<D>> velocity_gradient;  // (grad v)_ab = d v_a / d x_b, 1/s
   std::vector<double> viscosity;             // Pa s
+  std::vector<float> grip;  // 1, or less beside a port whose profile is not resolved: share of the wall's drag
   std::vector<Vector<D>> acceleration;       // m/s², all but pressure
   std::vector<Vector<D>> pressure_gradient;  // Pa/m
   std::vector<Vector<D>> displacement;       // m, shifting
@@ -59,6 +60,8 @@ struct Workspace {
     double weight;
   };
   std::vector<std::vector<WetLink>> wetting;  // 2 s + side: blood that wets shell row s on its + (0) or - (1) side, weights sum to 1
+  std::vector<double> support;                    // fluid rows: 1, or less where leaflets hide so much of the blood around that its volume
+                                                  // balance cannot be told (0 below 0.25 n0 of visible blood, 1 above 0.5 n0)
   std::vector<std::uint8_t> wet_side;         // 2 s + side: 1 = wetted itself, 0 = dry (weights taken from mesh neighbours)
   struct Coupling {
     double strength;             // A²/m, m⁴/kg
