@@ -114,7 +114,7 @@ double resolved_profile(const Scene<D>& scene, double speed) {
 // never against the mean flow; `local` in [0, 1] is how much of the local difference from the mean speed is kept. `sheet` holds the port's
 // rows by increasing height.
 template <int D>
-void extrapolate_speed(const Scene<D>& scene, State<D>& state, const Workspace<D>& work, const Port<D>& port, double mean, double local,
+void extrapolate_speed(State<D>& state, const Workspace<D>& work, const Port<D>& port, double mean, double local,
                        const std::vector<std::pair<double, std::size_t>>& sheet) {
   for (const auto& [height, i] : sheet) {
     double sum = 0, weights = 0;
@@ -168,7 +168,7 @@ void prescribe_ports(const Scene<D>& scene, State<D>& state, const Workspace<D>*
       state.velocity[i] = -speed * port.normal;
       state.pressure[i] = pressure;
     }
-    if (local) extrapolate_speed(scene, state, *work, port, speed, resolved_profile(scene, speed), sheet);
+    if (local) extrapolate_speed(state, *work, port, speed, resolved_profile(scene, speed), sheet);
   }
 }
 

@@ -5,6 +5,7 @@
 #include "sim/leaflet_coupling.h"
 #include "sim/operators.h"
 #include "sim/parallel.h"
+#include "sim/solid_coupling.h"
 
 namespace sim {
 using Index = std::ptrdiff_t;
@@ -90,7 +91,7 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
     const double n = work.number_density[i];
     double compression = std::clamp(n - 1, -0.2, 0.2);
     if (work.surface[i] != 0) compression = std::max(compression, 0.0);  // beside a surface neighbours are missing by right
-    if (beside_port) compression = std::max(compression, 0.0);  // what the open end lacks is no deficit
+    if (beside_port) compression = std::max(compression, 0.0);           // what the open end lacks is no deficit
     if (at_surface)  // the surface, where p = 0, lies half a spacing ahead; at least the missing neighbours count
       diagonal += volume * k / rho * std::max(work.surface_outward[i].norm() / (0.5 * scene.lattice.spacing), n0 * std::max(1 - n, 0.0));
     const double support = scene.sheet ? work.support[i] : 1.0;
@@ -151,8 +152,11 @@ SolveReport solve_pressure(const Scene<D>& scene, State<D>& state, Workspace<D>&
   const SchemeSettings& scheme = scene.description.scheme;
   const SolveReport report = conjugate_gradient(
       work.matrix, work.source, work.solution, scheme.pressure_tolerance, scheme.pressure_iterations, multigrid, work.scratch,
-      work.coupling.empty() ? std::function<void(std::span<const double>, std::span<double>)>{}
-                            : [&](std::span<const double> x, std::span<double> y) { apply_coupling(work, x, y); });
+      work.coupling.empty() && !scene.solids ? std::function<void(std::span<const double>, std::span<double>)>{}
+                                             : [&](std::span<const double> x, std::span<double> y) {
+                                                 apply_coupling(work, x, y);
+                                                 if (scene.solids) apply_solid_coupling(scene, state, work, x, y);
+                                               });
   if (!scene.pressure->anchored) remove_means(work.solution, label, regions);
   for (Index i = scene.first_fluid; i < static_cast<Index>(state.size()); ++i)
     if (state.kind[i] == Kind::fluid) {

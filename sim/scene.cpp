@@ -7,6 +7,7 @@
 #include "sim/port_walls.h"
 #include "sim/ports.h"
 #include "sim/sides.h"
+#include "sim/solid_coupling.h"
 #include "sim/step.h"
 #include "sim/walls.h"
 #include "sim/workspace.h"
@@ -79,7 +80,7 @@ Scene<D> make_scene(SceneDescription<D> description) {
     solids = solids || body.kind == Kind::elastic;
   }
   if (!(description.spacing > 0)) throw std::invalid_argument("spacing must be positive");
-  if (scheme.kernel_radius == 0) scheme.kernel_radius = D == 2 && !shells ? 3.1 : 2.1;
+  if (scheme.kernel_radius == 0) scheme.kernel_radius = D == 2 && !shells && !solids ? 3.1 : 2.1;
   scene.lattice = make_lattice(D, description.spacing, scheme.kernel_radius * description.spacing, scheme.literal_weight);
   scene.space = make_periodicity(description.domain);
   scene.fluid_particle_volume = std::pow(description.spacing, D);
@@ -89,7 +90,10 @@ Scene<D> make_scene(SceneDescription<D> description) {
   const SceneDescription<D>& d = scene.description;
   if (d.gravity && d.gravity->norm() > 0) scene.gravity = Gravity<D>{*d.gravity};
   if (fluid && viscous) scene.viscosity = Viscosity{shear_dependent, !shells};
-  if (solids) scene.solids = build_solids(d);
+  if (solids) {
+    scene.solids = build_solids(d);
+    if (fluid) scene.solid_normal = rest_surface_normals(d.particles, scene.elastic_count, d.spacing);
+  }
   if (shells) {
     scene.shells = build_shells(d);
     if (fluid) {

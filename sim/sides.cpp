@@ -339,7 +339,7 @@ void keep_sides(const Scene<D>& scene, State<D>& state, Workspace<D>& work) {
 }
 
 template <int D>
-void stick_in_gaps(const Scene<D>& scene, State<D>& state, const Workspace<D>& work) {
+void stick_in_gaps(State<D>& state, const Workspace<D>& work) {
   const Index near = static_cast<Index>(work.near_sheet.size());
   std::vector<Vector<D>> mean(near);
 #pragma omp parallel for schedule(dynamic, 64)
@@ -363,7 +363,7 @@ void stick_in_gaps(const Scene<D>& scene, State<D>& state, const Workspace<D>& w
   template void cut_links(const Scene<D>&, const State<D>&, Workspace<D>&);      \
   template void wetted_sides(const Scene<D>&, const State<D>&, Workspace<D>&);   \
   template void remember_sides(const Scene<D>&, const State<D>&, Workspace<D>&); \
-  template void stick_in_gaps(const Scene<D>&, State<D>&, const Workspace<D>&);  \
+  template void stick_in_gaps(State<D>&, const Workspace<D>&);  \
   template void keep_sides(const Scene<D>&, State<D>&, Workspace<D>&);
 INSTANTIATE(2)
 INSTANTIATE(3)

@@ -34,6 +34,6 @@ void keep_sides(const Scene<D>& scene, State<D>& state, Workspace<D>& work);
 
 // Blood in gaps too narrow to resolve (support < 1) moves with what surrounds it: there viscosity rules (lubrication).
 template <int D>
-void stick_in_gaps(const Scene<D>& scene, State<D>& state, const Workspace<D>& work);
+void stick_in_gaps(State<D>& state, const Workspace<D>& work);
 
 }  // namespace sim

@@ -12,6 +12,7 @@
 #include "sim/pressure.h"
 #include "sim/shifting.h"
 #include "sim/sides.h"
+#include "sim/solid_coupling.h"
 #include "sim/walls.h"
 
 namespace sim {
@@ -90,6 +91,7 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
     report.viscosity_iterations = solve_viscosity<D>(scene, state, work, dt, work.boundary_force).iterations;
   }
   number_unknowns(scene, state, work);
+  if (scene.solids) report.elastic_substeps = predict_solids(scene, state, work, dt);
   pressure_poisson(scene, state, work, dt);
   if (scene.shells) {
     report.elastic_substeps = predict_leaflets(scene, state, work, dt).substeps;
@@ -105,9 +107,10 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
   state.ledger.pressure_iterations += solve.iterations;
   pressure_gradients(scene, state, work);
   if (scene.shells) correct_leaflets(scene, state, work, dt);
+  if (scene.solids) correct_solids(scene, state, work, dt);
   shifting_displacement(scene, state, work, dt);
   advance_fluid(scene, state, work, dt);
-  if (scene.sheet) stick_in_gaps(scene, state, work);
+  if (scene.sheet) stick_in_gaps(state, work);
   shift_particles(scene, state, work);
   separate_particles(scene, state, work);
   if (scene.sheet) keep_sides(scene, state, work);
@@ -116,9 +119,16 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
   wrap_positions(scene, state);
 }
 
-// Shells alone, under their loads.
+// Solids and shells alone, under their loads.
 template <int D>
-void step_dry_shells(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
+void step_dry(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
+  if (scene.solids) {
+    report.elastic_substeps = predict_solids(scene, state, work, dt);
+    state.ledger.elastic_substeps += report.elastic_substeps;
+    std::copy(work.solid_position.begin(), work.solid_position.end(), state.position.begin());
+    std::copy(work.solid_velocity.begin(), work.solid_velocity.end(), state.velocity.begin());
+  }
+  if (!scene.shells) return;
   const ShellSubstepReport shells = predict_leaflets(scene, state, work, dt);
   report.elastic_substeps = shells.substeps;
   state.ledger.elastic_substeps += shells.substeps;
@@ -164,8 +174,8 @@ StepReport step(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
       if (scene.contact && !work.contact) work.contact = scene.contact;
       if (scene.pressure)
         step_fluid(scene, state, work, dt, report);
-      else if (scene.shells)
-        step_dry_shells(scene, state, work, dt, report);
+      else
+        step_dry(scene, state, work, dt, report);
       check_step(scene, state, dt);
       break;
     } catch (const NumericalFailure& failure) {

@@ -63,6 +63,15 @@ void boundary_surfaces(const Scene<D>& scene, const State<D>& state, Workspace<D
   const std::size_t first = static_cast<std::size_t>(scene.first_fluid);
   work.boundary_normal.assign(particles.normal.begin(), particles.normal.begin() + static_cast<std::ptrdiff_t>(first));
   work.boundary_velocity.assign(state.velocity.begin(), state.velocity.begin() + static_cast<std::ptrdiff_t>(first));
+  if (!scene.solid_normal.empty()) {  // carried along by the deformation: n = cof(F) n0
+    const auto solids = static_cast<std::size_t>(scene.elastic_count);
+    solid_derivatives<D>(*scene.solids, std::span(state.position).first(solids), work.solid_motion.work);
+    for (std::size_t b = 0; b < solids; ++b) {
+      const Tensor<D> gradient = Tensor<D>::Identity() + work.solid_motion.work.derivatives[b].template leftCols<D>();
+      const Vector<D> normal = cofactor<D>(gradient) * scene.solid_normal[b];
+      work.boundary_normal[b] = normal.squaredNorm() > 0 ? Vector<D>(normal.normalized()) : scene.solid_normal[b];
+    }
+  }
   if (scene.shells) {
     std::vector<double> area(static_cast<std::size_t>(scene.shell_count));
     const auto first_shell = static_cast<std::size_t>(scene.elastic_count), shells = area.size();

@@ -10,6 +10,7 @@
 #include "sim/linear_solver.h"
 #include "sim/neighbors.h"
 #include "sim/particles.h"
+#include "sim/solid_dynamics.h"
 
 namespace sim {
 
@@ -51,6 +52,19 @@ struct Workspace {
   // the viscosity problem
   SymmetricMatrix viscous_matrix;
   std::vector<double> viscous_source, viscous_solution;
+
+  // solids
+  SolidMotion<D> solid_motion;
+  SolidOperator<D> solid_operator;          // M + dt² K
+  double solid_factor_step = 0;             // s, the dt it was factorised for
+  int solid_factor_age = 0;                 // steps since
+  std::vector<Vector<D>> solid_position, solid_velocity;
+  struct SolidLink {
+    std::int32_t unknown;
+    Vector<D> area;                         // m² (2-D: m): volume flux of the unknown per unit velocity, and force per unit pressure
+  };
+  std::vector<std::int64_t> solid_link_start;
+  std::vector<SolidLink> solid_links;
 
   // leaflets
   std::optional<Contact<D>> contact;     // a copy of the scene's: it keeps its search between steps
