@@ -84,20 +84,26 @@ std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t item) {
 
 std::size_t weld_vertices(TriangleMesh& mesh, double tolerance) {
   const std::vector<std::int32_t> first = tolerance > 0 ? match_within(mesh.vertices, tolerance) : match_exactly(mesh.vertices);
+  const std::size_t before = mesh.vertices.size();
+  for (auto& triangle : mesh.triangles)
+    for (std::int32_t& corner : triangle) corner = first[std::size_t(corner)];
+  drop_unused_vertices(mesh);
+  return before - mesh.vertices.size();
+}
+
+void drop_unused_vertices(TriangleMesh& mesh) {
   std::vector<std::int32_t> new_index(mesh.vertices.size(), -1);
   std::vector<Eigen::Vector3d> kept;
   for (auto& triangle : mesh.triangles)
     for (std::int32_t& corner : triangle) {
-      const auto representative = std::size_t(first[std::size_t(corner)]);
-      if (new_index[representative] < 0) {
-        new_index[representative] = std::int32_t(kept.size());
-        kept.push_back(mesh.vertices[representative]);
+      std::int32_t& index = new_index[std::size_t(corner)];
+      if (index < 0) {
+        index = std::int32_t(kept.size());
+        kept.push_back(mesh.vertices[std::size_t(corner)]);
       }
-      corner = new_index[representative];
+      corner = index;
     }
-  const std::size_t gone = mesh.vertices.size() - kept.size();
   mesh.vertices = std::move(kept);
-  return gone;
 }
 
 MeshTopology measure_topology(const TriangleMesh& mesh) {

@@ -31,6 +31,9 @@ struct MeshTopology {
 // Merges vertices at the same position (`tolerance` 0: exactly equal) and drops unused ones. Returns how many went.
 std::size_t weld_vertices(TriangleMesh& mesh, double tolerance = 0);
 
+// Renumbers; vertices at one position stay apart (where two sheets of the surface touch).
+void drop_unused_vertices(TriangleMesh& mesh);
+
 MeshTopology measure_topology(const TriangleMesh& mesh);
 double signed_volume(const TriangleMesh& mesh);  // m³, > 0 when closed and oriented outward
 double surface_area(const TriangleMesh& mesh);   // m²

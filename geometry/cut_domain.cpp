@@ -188,7 +188,7 @@ TriangleMesh cut_off(const TriangleMesh& lumen, const Cut& cut, const Vector3d& 
   TriangleMesh part{out.vertices, {}};
   for (std::size_t t = 0; t < out.triangles.size(); ++t)
     if (kept[t]) part.triangles.push_back(out.triangles[t]);
-  weld_vertices(part);
+  drop_unused_vertices(part);
   return part;
 }
 
@@ -269,7 +269,7 @@ CutDomain cut_domain(const TriangleMesh& lumen, const Centreline& centreline, co
       domain.warnings.push_back(text);
     }
   }
-  weld_vertices(domain.surface);
+  drop_unused_vertices(domain.surface);
   if (!measure_topology(domain.surface).closed()) throw std::runtime_error("the cut domain does not close; check the root's planes");
   return domain;
 }

@@ -23,7 +23,7 @@ std::vector<Shell> split_shells(const TriangleMesh& mesh, const MeshTopology& to
     shells[std::size_t(topology.component_of_triangle[t])].capped.triangles.push_back(mesh.triangles[t]);
   for (Shell& shell : shells) {
     shell.capped.vertices = mesh.vertices;
-    weld_vertices(shell.capped);
+    drop_unused_vertices(shell.capped);
     shell.area = surface_area(shell.capped);
     for (const auto& loop : border_loops(shell.capped)) {
       std::vector<Eigen::Vector3d> rim;
@@ -87,7 +87,7 @@ DoubleWall reduce_double_wall(TriangleMesh& mesh) {
   }
   result.triangles_dropped = mesh.triangles.size() - kept.size();
   mesh.triangles = std::move(kept);
-  weld_vertices(mesh);
+  drop_unused_vertices(mesh);
   result.reduced = true;
   return result;
 }

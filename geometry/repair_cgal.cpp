@@ -2,6 +2,7 @@
 
 #define CGAL_EIGEN3_ENABLED 1
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/bbox.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_mesh_to_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
@@ -12,7 +13,9 @@
 #include <CGAL/Surface_mesh.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
+#include <numbers>
 
 namespace geometry::detail {
 namespace {
@@ -57,6 +60,10 @@ bool mend_surface(TriangleMesh& mesh, bool self_intersections) {
     Surface surface = to_surface(mesh);
     pmp::stitch_borders(surface);
     pmp::remove_degenerate_faces(surface);
+    // Caps of 179.9 degrees and needles 10 000 times as long as wide are round-off's degenerate faces: flipped or collapsed away.
+    const CGAL::Bbox_3 box = pmp::bbox(surface);
+    const double diagonal = std::hypot(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
+    pmp::experimental::remove_almost_degenerate_faces(surface, std::cos(179.9 * std::numbers::pi / 180), 1e4, 1e-5 * diagonal);
     if (self_intersections) pmp::experimental::remove_self_intersections(surface);
     mesh = from_surface(surface);
     return true;

@@ -143,7 +143,7 @@ void drop_specks(TriangleMesh& mesh, double share, RepairReport& report) {
   if (defect.count == 0) return;
   RepairReport scratch;
   drop_triangles(mesh, "specks", scratch, [&](std::size_t t) { return area[std::size_t(topology.component_of_triangle[t])] >= least; });
-  weld_vertices(mesh);
+  drop_unused_vertices(mesh);
   report.defects.push_back(defect);
   report.warnings.push_back("dropped " + std::to_string(defect.count) + " loose part(s) smaller than " + std::to_string(int(100 * share)) +
                             " % of the surface, the first at " + millimetres(defect.at));
@@ -197,7 +197,6 @@ void mend_manifold(TriangleMesh& mesh, double most_movement, RepairReport& repor
   const bool kept = done && moved <= most_movement;
   if (kept) {
     mesh = std::move(mended);
-    weld_vertices(mesh);
     report.moved = std::max(report.moved, moved);
   }
   const MeshTopology now = measure_topology(mesh);
@@ -287,6 +286,7 @@ RepairReport repair_mesh(TriangleMesh& mesh, const RepairOptions& options) {
                               std::to_string(wall.triangles_dropped) + " triangles of the outer one are left out");
   }
   mend_manifold(mesh, options.movement * diagonal, report);
+  drop_specks(mesh, options.speck, report);  // a fin comes off as a part of its own
   close_holes(mesh, options, report);
   turn_outward(mesh, report);
   return report;
