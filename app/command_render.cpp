@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -79,9 +80,15 @@ int render_runs(const Options& options) {
   if (!options.quiet) job.progress = print_progress;
   const MovieResult result = make_movie(job);
   if (options.json) {
-    const nlohmann::json json = {{"output", job.output.string()}, {"frames", result.frames},  {"width", job.width},
-                                 {"height", job.height},          {"fps", job.fps},           {"seconds", result.seconds},
-                                 {"driver", result.driver},       {"stopped", result.stopped}};
+    const nlohmann::json json = {{"output", job.output.string()},
+                                 {"frames", result.frames},
+                                 {"width", job.width},
+                                 {"height", job.height},
+                                 {"fps", job.fps},
+                                 {"seconds", result.seconds},
+                                 {"pictures_per_second", static_cast<double>(result.frames) / std::max(result.seconds, 1e-9)},
+                                 {"driver", result.driver},
+                                 {"stopped", result.stopped}};
     std::printf("%s\n", json.dump(2).c_str());
   } else if (!options.quiet) {
     std::printf("%s: %zu picture%s of %d x %d in %s, drawn by %s\n", job.output.c_str(), result.frames, result.frames == 1 ? "" : "s",

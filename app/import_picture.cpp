@@ -80,7 +80,8 @@ void add_ends(render::Frame& frame, const geometry::ImportResult& imported) {
   for (std::size_t k = 0; k < imported.open_ends.size(); ++k) {
     const geometry::OpenEnd& end = imported.open_ends[k];
     frame.surfaces.push_back(part(imported, static_cast<std::int32_t>(k), end.name));
-    frame.marks.push_back({end.center.cast<float>(), 0, end.name + ", " + millimetres(2 * end.radius) + " mm", end_color(k)});
+    frame.marks.push_back({(end.center + 0.8 * end.radius * end.normal).cast<float>(), 0,
+                           end.name + ", " + millimetres(2 * end.radius) + " mm", end_color(k)});
   }
 }
 
@@ -93,6 +94,16 @@ void add_root(render::Frame& frame, const geometry::ImportResult& imported) {
   const auto radius = static_cast<float>(0.04 * root.annulus.mean_diameter);
   for (int k = 0; k < 3; ++k) frame.marks.push_back({root.commissures[k].cast<float>(), radius, "", commissure_color});
   for (int k = 0; k < 3; ++k) frame.marks.push_back({root.nadirs[k].cast<float>(), 0.7f * radius, "", annulus_color});
+}
+
+// The wall within `reach` (m) of a point.
+render::Surface near_part(const render::Surface& wall, const Eigen::Vector3f& center, float reach) {
+  render::Surface part;
+  part.name = "root";
+  part.vertices = wall.vertices;
+  for (const auto& triangle : wall.triangles)
+    if ((wall.vertices[triangle[0]] - center).norm() < reach) part.triangles.push_back(triangle);
+  return part;
 }
 
 std::string plane_text(const char* name, const geometry::RootPlane& plane) {
@@ -144,6 +155,8 @@ void add_root_panels(render::Frame& frame, const geometry::ImportResult& importe
   const Eigen::Vector3f annulus = root.annulus.center.cast<float>(), junction = root.sinotubular_junction.center.cast<float>();
   const Eigen::Vector3f axis = (junction - annulus).normalized(), middle = 0.5f * (annulus + junction);
   const auto width = static_cast<float>(root.sinuses.largest_diameter);
+  const int near_wall = static_cast<int>(frame.surfaces.size());
+  frame.surfaces.push_back(near_part(frame.surfaces[0], middle, 1.1f * width));
   const Eigen::Vector3f toward = root.nadirs[0].cast<float>() - annulus;
   for (const bool along : {true, false}) {
     const auto view = along ? render::StandardView::long_axis : render::StandardView::from_aorta;
@@ -154,7 +167,7 @@ void add_root_panels(render::Frame& frame, const geometry::ImportResult& importe
                                            along ? 1.7f * (junction - annulus).norm() + 0.3f * width : 1.25f * width);
     const Eigen::Vector3f above = junction + 0.1f * width * axis;
     panel.clip = along ? render::ClipPlane{middle, panel.camera.backward} : render::ClipPlane{above, axis};
-    panel.surfaces = {{0, {-1, -1, vessel, along ? 0.45f : 0.28f}, false, true}};
+    panel.surfaces = {{near_wall, {-1, -1, vessel, along ? 0.45f : 0.28f}, false, true}};
     add_root_layers(panel, first_line, first_leaflet, leaflets, first_mark);
     if (along) {
       for (const auto& [plane, name, color] :
@@ -183,7 +196,8 @@ void add_words(render::Frame& frame, const geometry::ImportResult& imported) {
     frame.readouts.push_back(std::to_string(defect.count) + " " + kind + (defect.repaired ? " mended" : " LEFT"));
   }
   if (frame.readouts.empty()) frame.readouts = {"no defects"};
-  if (!imported.root) frame.warnings.push_back("no aortic root: " + imported.root_reason);
+  if (!imported.root)
+    frame.warnings.push_back((imported.root_reason.rfind("no root", 0) == 0 ? "" : "no aortic root: ") + imported.root_reason);
   if (imported.root && imported.root->built) frame.warnings.push_back("the root was built, not found");
   for (const std::string& warning : imported.warnings)
     if (frame.warnings.size() < 2) frame.warnings.push_back(warning);

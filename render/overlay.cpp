@@ -22,6 +22,17 @@ void draw_name(Image& image, float x, float y, const std::string& text, const Co
   lettering.regular.draw(image, x, y, size, text, color);
 }
 
+// The text, cut with an ellipsis where it is wider than `room` pixels.
+std::string shortened(const std::string& text, float room, int size, Lettering& lettering) {
+  if (lettering.regular.width(text, size) <= room) return text;
+  std::string cut = text;
+  while (!cut.empty() && lettering.regular.width(cut + "\u2026", size) > room) {
+    while (cut.size() > 1 && (static_cast<unsigned char>(cut.back()) >> 6) == 2) cut.pop_back();  // the tail of a UTF-8 letter
+    cut.pop_back();
+  }
+  return cut + "\u2026";
+}
+
 // The largest of 1, 2, 5 times a power of ten not above `most`.
 double round_length(double most) {
   const double power = std::pow(10.0, std::floor(std::log10(most)));
@@ -202,7 +213,9 @@ Layout lay_out(const Frame& frame, int width, int height) {
   Layout layout;
   const int em = layout.text_size = std::max(9, static_cast<int>(std::lround(std::min(height / 50.0, width / 64.0))));
   layout.header = {0, 0, width, 33 * em / 10};
-  layout.footer = {0, height - 18 * em / 10, width, 18 * em / 10};
+  const int lines = std::max<int>(1, static_cast<int>(std::min<std::size_t>(frame.warnings.size(), 3)));
+  const int footer_height = (4 + 14 * lines) * em / 10;
+  layout.footer = {0, height - footer_height, width, footer_height};
   const int plot_height = frame.plots.empty() ? 0 : std::min(9 * em, height / 4);
   layout.plots = {0, layout.footer.y - plot_height, width, plot_height};
   const int count = static_cast<int>(frame.panels.size()), columns = frame.columns > 0 ? std::min(frame.columns, count) : count;
@@ -291,24 +304,32 @@ void draw_header(Image& image, const Rect& place, const Frame& frame, Lettering&
   fill(image, as_float(place.x), as_float(place.y + place.height) - 1, as_float(place.width), 1, rule);
   const float em = as_float(lettering.size), right = as_float(place.x + place.width) - em;
   lettering.bold.draw(image, em, 1.45f * em, lettering.size * 11 / 10, frame.title, ink);
-  lettering.regular.draw(image, em, 2.7f * em, lettering.size * 85 / 100, frame.subtitle, faint);
+
   std::string time = frame.time_text;
   if (time.empty() && frame.time) time = "t = " + number_text(*frame.time, 3) + " s";
   lettering.bold.draw(image, right, 1.45f * em, lettering.size * 11 / 10, time, ink, Align::right);
   std::string readouts;
   for (const std::string& readout : frame.readouts) readouts += (readouts.empty() ? "" : "    ") + readout;
-  lettering.regular.draw(image, right, 2.7f * em, lettering.size * 85 / 100, readouts, ink, Align::right);
+  const int small = lettering.size * 85 / 100;
+  const float taken =
+      lettering.regular.draw(image, right, 2.7f * em, small, shortened(readouts, right - em, small, lettering), ink, Align::right);
+  lettering.regular.draw(image, em, 2.7f * em, small, shortened(frame.subtitle, right - taken - 3 * em, small, lettering), faint);
 }
 
 void draw_footer(Image& image, const Rect& place, const Frame& frame, Lettering& lettering) {
   fill(image, as_float(place.x), as_float(place.y), as_float(place.width), as_float(place.height), paper);
   fill(image, as_float(place.x), as_float(place.y), as_float(place.width), 1, rule);
-  const float em = as_float(lettering.size), baseline = as_float(place.y) + 1.2f * em;
+  const float em = as_float(lettering.size), right = as_float(place.x + place.width) - em;
   const int small = lettering.size * 85 / 100;
-  std::string warnings;
-  for (const std::string& warning : frame.warnings) warnings += (warnings.empty() ? "\u26A0 " : "   \u26A0 ") + warning;
-  lettering.regular.draw(image, em, baseline, small, warnings, alarm);
-  lettering.regular.draw(image, as_float(place.x + place.width) - em, baseline, small, frame.caption, faint, Align::right);
+  const float last_line = as_float(place.y + place.height) - 0.6f * em;
+  const float caption = lettering.regular.draw(image, right, last_line, small, frame.caption, faint, Align::right);
+  const std::size_t shown = std::min<std::size_t>(frame.warnings.size(), 3);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const bool last = i + 1 == shown;
+    const float room = right - em - (last && caption > 0 ? caption + em : 0.0f);
+    lettering.regular.draw(image, em, last_line - 1.4f * em * as_float(static_cast<int>(shown - 1 - i)), small,
+                           shortened("\u26A0 " + frame.warnings[i], room, small, lettering), alarm);
+  }
 }
 
 void draw_plots(Image& image, const Rect& place, const Frame& frame, Lettering& lettering) {
