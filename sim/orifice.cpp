@@ -50,7 +50,8 @@ class LumenRadius {
       radius_[b] = (1 - t) * found[(before + bins) % bins] + t * found[after % bins];
     }
   }
-  bool inside(const Vector2d& p) const { return p.norm() < radius_[bin(p)]; }
+  // At least `margin` within, so that the chords between held rows leave no slivers.
+  bool inside(const Vector2d& p, double margin) const { return p.norm() < radius_[bin(p)] - margin; }
   double largest() const { return *std::max_element(radius_.begin(), radius_.end()); }
 
  private:
@@ -138,7 +139,8 @@ OrificeArea geometric_orifice_area(const ShellElasticity<3>& shells, std::span<c
   raster.low = -0.5 * raster.size * resolution;
   raster.open.resize(static_cast<std::size_t>(raster.size) * raster.size);
   for (int j = 0; j < raster.size; ++j)
-    for (int i = 0; i < raster.size; ++i) raster.open[static_cast<std::size_t>(j) * raster.size + i] = lumen.inside(raster.center(i, j));
+    for (int i = 0; i < raster.size; ++i)
+      raster.open[static_cast<std::size_t>(j) * raster.size + i] = lumen.inside(raster.center(i, j), resolution);
   for (const auto& element : shells.elements)
     cover(raster, {project(position[element[0]]), project(position[element[1]]), project(position[element[2]])}, half_thickness);
   OrificeArea result;
