@@ -53,7 +53,7 @@ std::vector<StageLine> stages_of(const SceneFile& scene, bool shells, bool solid
           {"gravity on the fluid", scene.gravity && !fluid.empty() ? "gravity.acceleration" : ""},
           {"loads on the fluid", fluid_loads ? "load" : ""},
           {"dissipation of unresolved scales",
-           !fluid.empty() && scene.scheme.subparticle_dissipation > 0 ? "scheme.subparticle_dissipation (default)" : ""},
+           !fluid.empty() && scene.scheme.subparticle_dissipation != 0 ? "scheme.subparticle_dissipation (default)" : ""},
           {"viscosity, implicit", where(rheology, ".material")},
           {"elastic shells, explicit sub-steps", shells ? where(elastic, "") : ""},
           {"contact of shells", shells ? where(elastic, "") : ""},

@@ -81,6 +81,8 @@ Scene<D> make_scene(SceneDescription<D> description) {
   }
   if (!(description.spacing > 0)) throw std::invalid_argument("spacing must be positive");
   if (scheme.kernel_radius == 0) scheme.kernel_radius = D == 2 && !shells && !solids ? 3.1 : 2.1;
+  if (scheme.subparticle_dissipation < 0) scheme.subparticle_dissipation = shells ? 0.3 : 0.1;
+  if (scheme.viscosity_limit == 0) scheme.viscosity_limit = shells ? 0.1 : 1000;
   scene.lattice = make_lattice(D, description.spacing, scheme.kernel_radius * description.spacing, scheme.literal_weight);
   scene.space = make_periodicity(description.domain);
   scene.fluid_particle_volume = std::pow(description.spacing, D);

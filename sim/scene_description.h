@@ -154,8 +154,8 @@ struct SchemeSettings {                    // every numerical knob; lengths in u
   int pressure_iterations = 500;
   double density_blend = 0.01;             // gamma of the density correction in the source of the pressure equation
   double shifting = 0.6;                   // largest strength A of particle shifting; 0 = off
-  double subparticle_dissipation = 0.1;    // C of the dissipation for unresolved scales; 0 = off
-  double viscosity_limit = 1000;           // Pa s, cap of the rheological viscosity
+  double subparticle_dissipation = -1;     // C of the dissipation for unresolved scales; 0 = off; -1 = chosen by make_scene: 0.3 with leaflets, else 0.1
+  double viscosity_limit = 0;              // Pa s, cap of the rheological viscosity; 0 = chosen by make_scene: 0.1 with leaflets, else 1000
   double added_mass = 2.0;                 // factor on the blood's mass within a leaflet's own lattice layer, rho (l0 - h) per area
   double resolved_mass = 0.3;              // share of (leaflet + layer) mass by which the blood farther out is felt within a step
   double bending_viscosity = 60;           // m/s: leaflets in blood: the shortest bending wave dies out at the rate of this over l0

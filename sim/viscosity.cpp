@@ -168,15 +168,22 @@ SolveReport solve_viscosity(const Scene<D>& scene, const State<D>& state, Worksp
   if (!boundary_force.empty()) {
     const Index solids = static_cast<Index>(boundary_force.size());
 #pragma omp parallel for schedule(dynamic, 64)
-    for (Index s = 0; s < solids; ++s)
+    for (Index s = 0; s < solids; ++s) {
+      // The drag is taken as if the particle gave way within the step: with stiff blood the plain one would throw it back and forth.
+      const double mass = s < scene.elastic_count ? scene.solids->mass[s] : scene.shells->mass[s - scene.elastic_count];
+      Vector<D> drag = Vector<D>::Zero();
+      double coefficient = 0;
       for (std::int64_t k = work.neighbors.start[s]; k < work.neighbors.start[s + 1]; ++k) {
         const std::int32_t i = work.neighbors.index[k];
         const double w = work.link_weight[k];
         if (w == 0 || state.kind[i] != Kind::fluid) continue;
         const Vector<D> r = scene.space.difference(state.position[i], state.position[s]);
-        const double c = link_coefficient<D>(scene, state, work, i, static_cast<std::int32_t>(s), r, w);
-        boundary_force[s] += scene.fluid_particle_volume * c * (state.velocity[i] + dt * work.acceleration[i] - work.boundary_velocity[s]);
+        const double c = scene.fluid_particle_volume * link_coefficient<D>(scene, state, work, i, static_cast<std::int32_t>(s), r, w);
+        drag += c * (state.velocity[i] + dt * work.acceleration[i] - work.boundary_velocity[s]);
+        coefficient += c;
       }
+      boundary_force[s] += drag / (1 + dt * coefficient / mass);
+    }
   }
   return report;
 }
