@@ -47,11 +47,11 @@ double reference_speed(const SceneDescription<D>& description) {
         speed = std::max(speed, std::abs(v) / (D == 3 ? M_PI * port.radius * port.radius : 2 * port.radius));
     }
     if (port.condition == PortCondition::pressure) {
-      highest = std::max(highest, port.table.at(0));
-      lowest = std::min(lowest, port.table.at(0));
+      for (double p : port.table.value) highest = std::max(highest, p), lowest = std::min(lowest, p);
     }
     speed = std::max(speed, std::abs(port.start_speed));
   }
+  // What pressures at ports can make is a bound, not an expectation: a fifth of it enters the first steps (time_step.cpp).
   if (highest > lowest) speed = std::max(speed, std::sqrt(2 * (highest - lowest) / density));
   for (const auto& motion : description.motions) {
     speed = std::max(speed, motion.surface_velocity.norm());
@@ -82,6 +82,7 @@ Scene<D> make_scene(SceneDescription<D> description) {
   if (!(description.spacing > 0)) throw std::invalid_argument("spacing must be positive");
   if (scheme.kernel_radius == 0) scheme.kernel_radius = D == 2 && !shells && !solids ? 3.1 : 2.1;
   if (scheme.subparticle_dissipation < 0) scheme.subparticle_dissipation = shells ? 0.3 : 0.1;
+  if (scheme.maximum_step == 0 && shells && fluid) scheme.maximum_step = 0.1 * description.spacing;  // at 1 m/s a tenth of l0
   if (scheme.viscosity_limit == 0) scheme.viscosity_limit = shells ? 0.1 : 1000;
   scene.lattice = make_lattice(D, description.spacing, scheme.kernel_radius * description.spacing, scheme.literal_weight);
   scene.space = make_periodicity(description.domain);

@@ -149,7 +149,7 @@ struct SchemeSettings {                    // every numerical knob; lengths in u
   double kernel_radius = 0;                // r_e/l0; 0 = chosen by make_scene: 3.1 in 2-D without leaflets, else 2.1
   double elastic_kernel_radius = 2.1;
   double cfl = 0.2;                        // dt <= cfl l0 / u_max
-  double maximum_step = 0;                 // s; 0 = none beyond the physical limits
+  double maximum_step = 0;                 // s; 0 = none beyond the physical limits; with leaflets in blood 0.1 s/m times l0
   double pressure_tolerance = 1e-5;        // relative residual
   int pressure_iterations = 500;
   double density_blend = 0.01;             // gamma of the density correction in the source of the pressure equation
