@@ -32,7 +32,7 @@ void add_body(sim::SceneDescription<2>& scene, const std::string& name, sim::Kin
       p.kind.push_back(kind);
       p.body.push_back(static_cast<std::int32_t>(scene.bodies.size()));
       p.volume.push_back(l0 * l0);
-      p.normal.push_back(kind == sim::Kind::wall ? Vector2::UnitY() : Vector2::Zero());
+      p.normal.push_back(kind == sim::Kind::wall ? Vector2(Vector2::UnitY()) : Vector2(Vector2::Zero()));
       p.depth.push_back(kind == sim::Kind::wall ? wall_top - x.y() : 0);
       Vector2 area = Vector2::Zero();
       if (kind == sim::Kind::elastic) {
