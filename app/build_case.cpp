@@ -16,15 +16,20 @@ sim::Vector<D> reduced(const Eigen::Vector3d& v) {
   return v.head<D>();
 }
 
-// Rows (relative to the body) whose centre lies in the region; where the region is thinner than a particle, those whose cell it cuts.
-std::vector<std::int64_t> rows_in_region(const ShapeSpec& region, const BodyParticles& body, int dimension, double spacing) {
+// A region's shape; a box without thickness gets a little.
+geometry::Shape region_shape(const ShapeSpec& region, int dimension, double spacing) {
   ShapeSpec padded = region;
   for (int axis = 0; axis < 3; ++axis)
     if (padded.type == ShapeType::box && padded.max[axis] - padded.min[axis] < 1e-6 * spacing) {
       padded.min[axis] -= 1e-6 * spacing;
       padded.max[axis] += 1e-6 * spacing;
     }
-  const geometry::Shape shape = to_geometry(padded, dimension, spacing);
+  return to_geometry(padded, dimension, spacing);
+}
+
+// Rows (relative to the body) whose centre lies in the region; where the region is thinner than a particle, those whose cell it cuts.
+std::vector<std::int64_t> rows_in_region(const ShapeSpec& region, const BodyParticles& body, int dimension, double spacing) {
+  const geometry::Shape shape = region_shape(region, dimension, spacing);
   std::vector<std::int64_t> inside, cut;
   for (std::size_t i = 0; i < body.size(); ++i) {
     const double distance = geometry::signed_distance(shape, body.position[i], dimension);
@@ -35,6 +40,31 @@ std::vector<std::int64_t> rows_in_region(const ShapeSpec& region, const BodyPart
   if (found.empty())
     refuse(region.spot, "holds no particle of body \"" + body.name + "\"", "regions are in the initial configuration, in m");
   return found;
+}
+
+// A force on a region beyond the particles' centres (a face, a tip) acts there: each share f of a row at distance d from the region becomes
+// f (1 + d/s) on the row and -f d/s on the one behind it at distance s, which has the same resultant and moment.
+void move_shares_to_region(const ShapeSpec& region, const BodyParticles& body, int dimension, double spacing,
+                           std::vector<std::int64_t>& rows, std::vector<double>& share) {
+  const geometry::Shape shape = region_shape(region, dimension, spacing);
+  const std::size_t count = rows.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Eigen::Vector3d x = body.position[static_cast<std::size_t>(rows[k])];
+    const double away = geometry::signed_distance(shape, x, dimension);
+    if (away <= 1e-9 * spacing) continue;
+    const Eigen::Vector3d back = geometry::distance_gradient(shape, x, dimension, 1e-4 * spacing);
+    std::size_t behind = body.size();
+    double nearest = 0.3 * spacing;
+    for (std::size_t j = 0; j < body.size(); ++j) {
+      const double miss = (body.position[j] - x - spacing * back).norm();
+      if (miss < nearest) nearest = miss, behind = j;
+    }
+    if (behind == body.size()) continue;
+    const double lever = away / (body.position[behind] - x).dot(back) * share[k];
+    share[k] += lever;
+    rows.push_back(static_cast<std::int64_t>(behind));
+    share.push_back(-lever);
+  }
 }
 
 // Rows of a body's surface that a pressure acts on: the surface point that the particle carries lies in the region.
@@ -109,12 +139,46 @@ struct Builder {
       if (fibres) fibre = reduced<D>(spec.fibre_direction ? *spec.fibre_direction : part.fibre[i]);
       rows.fibre.push_back(fibre);
     }
+    rows.clamp_offset.resize(rows.size(), sim::Vector<D>::Zero());
+    rows.clamp_axes.resize(rows.size(), 0);
     for (const FixedSpec& fixed : spec.fixed)
-      for (std::int64_t row : rows_in_region(fixed.region, part, D, scene.spacing)) rows.fixed[body.first + row] |= fixed.directions;
+      if (part.kind == sim::Kind::elastic)
+        hold_solid(fixed, part, body);
+      else
+        for (std::int64_t row : rows_in_region(fixed.region, part, D, scene.spacing)) rows.fixed[body.first + row] |= fixed.directions;
     for (const StiffnessSpec& stiffness : spec.stiffness_map)
       for (std::int64_t row : rows_in_region(stiffness.region, part, D, scene.spacing))
         rows.stiffness_scale[body.first + row] *= stiffness.scale;
     if (part.kind == sim::Kind::shell) add_mesh(index);
+  }
+
+  // Particles inside a fixed region are held; those outside but next to its face learn where the face is, so that the clamp
+  // acts there wherever it cuts the lattice. The region may merely touch the body.
+  void hold_solid(const FixedSpec& fixed, const BodyParticles& part, const sim::Body& body) {
+    const geometry::Shape shape = region_shape(fixed.region, D, scene.spacing);
+    sim::InitialParticles<D>& rows = description().particles;
+    const auto distance = [&](const Eigen::Vector3d& x) { return geometry::signed_distance(shape, x, D); };
+    bool any = false;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const std::size_t row = static_cast<std::size_t>(body.first) + i;
+      const double away = distance(part.position[i]);
+      if (away >= 1.6 * scene.spacing) continue;
+      any = any || away <= 1.001 * scene.spacing;
+      if (away <= 1e-9 * scene.spacing) {
+        rows.fixed[row] |= fixed.directions;
+        continue;
+      }
+      if (rows.clamp_axes[row] && rows.clamp_offset[row].norm() <= away) continue;  // another region's face is nearer
+      Eigen::Vector3d slope = Eigen::Vector3d::Zero();
+      for (int axis = 0; axis < D; ++axis) {
+        const Eigen::Vector3d step = 1e-4 * scene.spacing * Eigen::Vector3d::Unit(axis);
+        slope[axis] = distance(part.position[i] + step) - distance(part.position[i] - step);
+      }
+      rows.clamp_offset[row] = reduced<D>(-away * slope.normalized());
+      rows.clamp_axes[row] = fixed.directions;
+    }
+    if (!any)
+      refuse(fixed.region.spot, "holds no particle of body \"" + body.name + "\"", "regions are in the initial configuration, in m");
   }
 
   void add_mesh(int index) {
@@ -133,7 +197,8 @@ struct Builder {
     for (const sim::Body& body : description().bodies) {
       if (body.kind != sim::Kind::elastic && body.kind != sim::Kind::shell) continue;
       std::uint8_t held = 0;
-      for (std::int64_t row = body.first; row < body.first + body.count; ++row) held |= description().particles.fixed[row];
+      for (std::int64_t row = body.first; row < body.first + body.count; ++row)
+        held |= description().particles.fixed[row] | description().particles.clamp_axes[row];
       for (int axis = 0; axis < D; ++axis)
         if (!(held >> axis & 1))
           refuse({scene.path.string(), 0, "body." + body.name},
@@ -171,10 +236,10 @@ struct Builder {
     load.name = spec.name, load.body = index, load.ramp = spec.ramp, load.factor = spec.factor, load.pressure = spec.pressure;
     double mine = 0;
     for (std::int64_t row : rows) mine += part.volume[row];
-    for (std::int64_t row : rows) {
-      load.rows.push_back(description().bodies[index].first + row);
-      load.share.push_back(part.volume[row] / mine);
-    }
+    load.rows = rows;
+    for (std::int64_t row : rows) load.share.push_back(part.volume[row] / mine);
+    if (spec.force && spec.region) move_shares_to_region(*spec.region, part, D, scene.spacing, load.rows, load.share);
+    for (std::int64_t& row : load.rows) row += description().bodies[index].first;
     if (spec.force) load.force = reduced<D>(*spec.force) * (mine / whole);
     if (spec.acceleration) {
       const auto formula = spec.acceleration->compile();

@@ -42,6 +42,13 @@ void copy_rows(const SceneDescription<D>& scene, SolidElasticity<D>& solid) {
       throw std::invalid_argument("elastic body '" + body.name + "': " + error.what());
     }
     solid.mass.push_back(body.elastic.density * solid.volume[i]);
+    // A clamp's face that does not run along cell faces leaves the particle next to it more or less than its cell to stand for.
+    if (particles.clamp_axes.size() >= n && (particles.clamp_axes[i] & ~particles.fixed[i]) &&
+        particles.clamp_offset[i].norm() < 1.001 * scene.spacing) {
+      const double part = std::clamp(particles.clamp_offset[i].norm() / scene.spacing + 0.5, 0.5, 1.5);
+      solid.volume[i] *= part;
+      solid.surface_area[i] *= part;
+    }
     solid.damping.push_back(body.elastic.damping);
     solid.wave_speed.push_back(wave_speed<D>(solid.law[i], body.elastic.density));
     solid.cell_moment.push_back(std::pow(solid.volume[i], 2.0 / D) / 12);

@@ -117,11 +117,11 @@ double make_consistent(SolidElasticity<D>& solid) {
     std::int32_t unknowns = 0;
     for (std::size_t i = 0; i < solid.size(); ++i)
       if (!(solid.fixed[i] >> axis & 1)) number[i] = unknowns++;
-    SymmetricSolver solver;
+    SymmetricSolver solver(1e-4, 200, true);
     if (unknowns == 0 || !solver.factorise(multiplier_matrix(solid, uncorrected, axis, number, unknowns))) continue;
     // The surface weights change with the gradients: a few rounds.
     double before = 1e300;
-    for (int round = 0; round < 12; ++round) {
+    for (int round = 0; round < (solver.direct() ? 12 : 3); ++round) {
       const std::vector<Vector<D>> wanted = mismatch(solid, axis);
       double remaining = 0;
       for (const Vector<D>& sum : wanted) remaining = std::max(remaining, sum.norm() / std::pow(solid.spacing, D - 1));

@@ -41,7 +41,8 @@ void scatter_add(const SolidPattern<D>& pattern, const Eigen::VectorXd& values, 
 // kept between factorisations of the same pattern.
 class SymmetricSolver {
  public:
-  SymmetricSolver();
+  // tolerance: relative residual of the iteration; best_effort: accept what max_iterations give (0 = plenty) instead of throwing.
+  explicit SymmetricSolver(double tolerance = 1e-10, int max_iterations = 0, bool best_effort = false);
   ~SymmetricSolver();
   SymmetricSolver(SymmetricSolver&&) noexcept;
   SymmetricSolver& operator=(SymmetricSolver&&) noexcept;
@@ -50,7 +51,7 @@ class SymmetricSolver {
   bool factorise(const Eigen::SparseMatrix<double>& lower);
   bool positive_definite() const;  // of the last factorised matrix (true for the iterative solver)
   bool direct() const;
-  // Relative residual 1e-10; throws std::runtime_error where the iteration does not get there.
+  // Throws std::runtime_error where the iteration does not get to its tolerance.
   Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const;
 
  private:
