@@ -208,12 +208,14 @@ ShellStaticReport Equilibrium<D>::solve(double tolerance, int iterations) {
     Eigen::VectorXd step = newton_step(solver, r, shift);
     if (!step.allFinite()) break;
     const double largest = step.cwiseAbs().maxCoeff();
-    if (largest > 2 * spacing) step *= 2 * spacing / largest;
-    // Matthies & Strang: shorten until the step's work |dx . r| has not grown.
+    const bool cut = largest > 2 * spacing;
+    if (cut) step *= 2 * spacing / largest;
+    // Matthies & Strang: shorten until the step's work |dx . r| has fallen; a step cut to two spacings need only not overshoot.
+    const double allowed = cut ? 1.3 : 0.9;
     const double work = std::abs(step.dot(r));
     double factor = 1;
     Eigen::VectorXd next = imbalance(step, scale);
-    while (factor > 1e-3 && !(std::abs(step.dot(next)) <= 0.9 * work)) next = imbalance((factor *= 0.5) * step, scale);
+    while (factor > 1e-3 && !(std::abs(step.dot(next)) <= allowed * work)) next = imbalance((factor *= 0.5) * step, scale);
     move(factor * step);
     r = next;
   }
