@@ -12,7 +12,7 @@ namespace {
 using app::parse_scene_text;
 using app::SceneFile;
 
-const std::string plate = R"(title = "Elastic plate under a water column"
+const std::string plate = R"toml(title = "Elastic plate under a water column"
 dimension = 2
 spacing = 0.01
 [domain]
@@ -54,7 +54,7 @@ body = "plate"
 at = [0.5, -0.025]
 [reference]
 mid = { y = -7.066e-5, source = "2-D elasticity", uncertainty = 1e-8 }
-)";
+)toml";
 
 SceneFile read(const std::string& text, const std::vector<std::string>& settings = {}) {
   return parse_scene_text(text, "plate.toml", settings);
@@ -114,7 +114,7 @@ TEST(SceneFile, NamesTheLineAndTheNearestKeyOfAMisspeltOne) {
 
 TEST(SceneFile, RefusesMissingKeysAndWrongTypes) {
   expect_refused("spacing = 0.01\n", "", {"spacing", "is missing"});
-  expect_refused("kind = \"fluid\"\n", "", {"plate.toml:12", "body.water.kind", "is missing"});
+  expect_refused("kind = \"fluid\"\n", "", {"plate.toml:13", "body.water.kind", "is missing"});
   expect_refused("spacing = 0.01", "spacing = \"0.01\"", {"plate.toml:3: spacing", "string", "number"});
   expect_refused("end = 1.0", "end = [1.0]", {"plate.toml:8: time.end", "array"});
   expect_refused("min = [0, 0], max = [1, 2]", "min = [0, 0, 0], max = [1, 2]", {"plate.toml:16:", "3 numbers", "give 2"});
