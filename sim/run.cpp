@@ -192,8 +192,8 @@ struct Running {
         if (statics) {
           statics->advance(state, book.next_output);
         } else {
-          if (!scene.description.probes.empty() && from + 2 * std::max(state.last_step, time.step) >= book.next_output &&
-              state.last_step > 0)
+          if (!scene.description.probes.empty() &&
+              (state.last_step == 0 || from + 2 * std::max(state.last_step, time.step) >= book.next_output))
             before = probes.evaluate(scene, state);
           step(scene, state, work, time.end - from);
         }

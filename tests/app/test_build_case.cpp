@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 
 namespace {
@@ -55,19 +57,21 @@ TEST(BuildCase, HoldsTheParticlesWhoseCentreIsInTheRegion) {
     EXPECT_EQ(scene.particles.fixed[i], scene.particles.position[i].x() < 2.2 ? 3 : 0);
 }
 
-TEST(BuildCase, SharesAForceOutEvenlyAndTakesCutParticlesOfAThinRegion) {
+TEST(BuildCase, SharesAForceOutEvenlySoThatItActsAtTheFace) {
   const auto scene =
       built(head + block(clamp) + "[[load]]\nbody = \"block\"\nregion = { type = \"box\", min = [3, 0], max = [3, 0.4] }\nforce = [0, 8]\n")
           .description;
   const auto& load = scene.loads.at(0);
-  ASSERT_EQ(load.rows.size(), 4u);
-  double sum = 0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    EXPECT_NEAR(scene.particles.position[static_cast<std::size_t>(load.rows[k])].x(), 2.95, 1e-12);
-    EXPECT_DOUBLE_EQ(load.share[k], 0.25);
+  // Each of the four rows beside the face, and the one behind it that moves the resultant onto the face itself.
+  ASSERT_EQ(load.rows.size(), 8u);
+  double sum = 0, moment = 0;
+  for (std::size_t k = 0; k < load.rows.size(); ++k) {
+    EXPECT_NEAR(load.share[k], k < 4 ? 0.375 : -0.125, 1e-6);  // a region without thickness gets 1e-6 of the spacing
     sum += load.share[k];
+    moment += load.share[k] * scene.particles.position[static_cast<std::size_t>(load.rows[k])].x();
   }
-  EXPECT_DOUBLE_EQ(sum, 1);
+  EXPECT_NEAR(sum, 1, 1e-12);
+  EXPECT_NEAR(moment, 3, 1e-6);
 }
 
 TEST(BuildCase, APressureActsOnTheSurfaceInItsRegion) {
