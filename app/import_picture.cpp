@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "render/renderer.h"
+#include "render/skin.h"
 
 namespace app {
 namespace {
@@ -96,16 +97,6 @@ void add_root(render::Frame& frame, const geometry::ImportResult& imported) {
   for (int k = 0; k < 3; ++k) frame.marks.push_back({root.nadirs[k].cast<float>(), 0.7f * radius, "", annulus_color});
 }
 
-// The wall within `reach` (m) of a point.
-render::Surface near_part(const render::Surface& wall, const Eigen::Vector3f& center, float reach) {
-  render::Surface part;
-  part.name = "root";
-  part.vertices = wall.vertices;
-  for (const auto& triangle : wall.triangles)
-    if ((wall.vertices[triangle[0]] - center).norm() < reach) part.triangles.push_back(triangle);
-  return part;
-}
-
 std::string plane_text(const char* name, const geometry::RootPlane& plane) {
   return std::string(name) + " " + millimetres(plane.largest_diameter) + " × " + millimetres(plane.perpendicular_diameter) + " mm";
 }
@@ -156,7 +147,7 @@ void add_root_panels(render::Frame& frame, const geometry::ImportResult& importe
   const Eigen::Vector3f axis = (junction - annulus).normalized(), middle = 0.5f * (annulus + junction);
   const auto width = static_cast<float>(root.sinuses.largest_diameter);
   const int near_wall = static_cast<int>(frame.surfaces.size());
-  frame.surfaces.push_back(near_part(frame.surfaces[0], middle, 1.1f * width));
+  frame.surfaces.push_back(render::cut_away(frame.surfaces[0], {annulus - 0.25f * width * axis, -axis}));  // not the ventricle below it
   const Eigen::Vector3f toward = root.nadirs[0].cast<float>() - annulus;
   for (const bool along : {true, false}) {
     const auto view = along ? render::StandardView::long_axis : render::StandardView::from_aorta;
@@ -167,7 +158,7 @@ void add_root_panels(render::Frame& frame, const geometry::ImportResult& importe
                                            along ? 1.7f * (junction - annulus).norm() + 0.3f * width : 1.25f * width);
     const Eigen::Vector3f above = junction + 0.1f * width * axis;
     panel.clip = along ? render::ClipPlane{middle, panel.camera.backward} : render::ClipPlane{above, axis};
-    panel.surfaces = {{near_wall, {-1, -1, vessel, along ? 0.45f : 0.28f}, false, true}};
+    panel.surfaces = {{along ? 0 : near_wall, {-1, -1, vessel, along ? 0.45f : 0.28f}, false, true}};
     add_root_layers(panel, first_line, first_leaflet, leaflets, first_mark);
     if (along) {
       for (const auto& [plane, name, color] :

@@ -7,6 +7,9 @@
 #include <set>
 #include <stdexcept>
 
+#include "geometry/triangle_tree.h"
+#include "render/skin.h"
+
 namespace app {
 namespace {
 
@@ -29,10 +32,45 @@ render::Bounds bounds_over(const sim::RunReader& run) {
     const sim::RunFrame frame = run.frame(looked_at > 1 ? i * (count - 1) / (looked_at - 1) : 0);
     for (std::size_t row = 0; row < frame.size(); ++row) {
       const Eigen::Vector3f p = point(frame.position[row]);
-      if (kind_of(frame, row) != sim::Kind::wall && p.allFinite()) bounds.add(p, radius);
+      if (kind_of(frame, row) != sim::Kind::wall && kind_of(frame, row) != sim::Kind::port && p.allFinite()) bounds.add(p, radius);
     }
   }
   return bounds;
+}
+
+// The vessel from a little below the annulus to a little above the commissures.
+render::Surface root_part(const render::Surface& lumen, const sim::ValveFrame& valve) {
+  const Eigen::Vector3f annulus = valve.annulus_center.cast<float>(), axis = valve.axis.cast<float>();
+  const auto radius = static_cast<float>(valve.annulus_radius), height = static_cast<float>(valve.commissure_height);
+  return render::cut_away(render::cut_away(lumen, {annulus - 0.7f * radius * axis, -axis}),
+                          {annulus + (height + 0.6f * radius) * axis, axis});
+}
+
+// The leaflets' triangles without those that lie wholly behind the wall, where a leaflet is anchored. A particle lies behind the wall where
+// the ray to it from the valve's axis meets the wall half a spacing or more before it.
+std::vector<sim::RunHeader::ShellInfo> visible_shells(const sim::RunHeader& header, const std::vector<std::array<double, 3>>& start) {
+  std::vector<sim::RunHeader::ShellInfo> shells = header.shells;
+  if (!header.valve || header.lumen.triangles.empty() || header.dimension == 2) return shells;
+  geometry::TriangleMesh wall;
+  for (const auto& v : header.lumen.vertices) wall.vertices.emplace_back(v[0], v[1], v[2]);
+  wall.triangles = header.lumen.triangles;
+  const geometry::TriangleTree tree(wall);
+  const Eigen::Vector3d axis = header.valve->axis;
+  const auto behind = [&](std::int64_t row) {
+    const auto& p = start.at(static_cast<std::size_t>(row));
+    const Eigen::Vector3d from = Eigen::Vector3d(p[0], p[1], p[2]) - header.valve->annulus_center;
+    const Eigen::Vector3d across = from - axis * axis.dot(from);
+    const double distance = across.norm();
+    return distance > 0 &&
+           tree.first_hit(header.valve->annulus_center + axis * axis.dot(from), across / distance) < distance - 0.5 * header.spacing;
+  };
+  for (sim::RunHeader::ShellInfo& shell : shells) {
+    const sim::RunHeader::BodyInfo& body = header.bodies.at(static_cast<std::size_t>(shell.body));
+    std::vector<bool> hidden;
+    for (std::int64_t row = body.first; row < body.first + body.count; ++row) hidden.push_back(behind(row));
+    std::erase_if(shell.elements, [&](const auto& t) { return hidden.at(t[0]) && hidden.at(t[1]) && hidden.at(t[2]); });
+  }
+  return shells;
 }
 
 }  // namespace
@@ -80,9 +118,14 @@ FrameMaker::FrameMaker(const sim::RunReader& run, PictureChoice choice, const Fi
   for (std::size_t i = 0; i < run.frame_count(); ++i) times_.push_back(run.frame_time(i));
   start_ = run.frame(0).position;
   bounds_ = bounds_over(run);
+  shells_ = visible_shells(run.header(), start_);
   series_ = run.series();
   plots_ = make_plots(run.header(), series_);
   const sim::RunHeader& header = run.header();
+  lumen_.name = root_.name = "aorta";
+  for (const auto& v : header.lumen.vertices) lumen_.vertices.emplace_back(v[0], v[1], v[2]);
+  lumen_.triangles = header.lumen.triangles;
+  if (header.valve) root_ = root_part(lumen_, *header.valve);
   if (header.valve && !header.valve->leaflet_bodies.empty()) {
     const sim::RunHeader::BodyInfo& body = header.bodies.at(static_cast<std::size_t>(header.valve->leaflet_bodies.front()));
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -104,7 +147,7 @@ void FrameMaker::add_particles(render::Frame& frame, const sim::RunFrame& state)
   frame.particles[solid_set].fields.resize(solid_fields.size());
   for (std::size_t row = 0; row < state.size(); ++row) {
     const sim::Kind kind = kind_of(state, row);
-    if (kind == sim::Kind::shell) continue;
+    if (kind == sim::Kind::shell || kind == sim::Kind::port) continue;  // a port's particles lie outside the open end
     const int slot = kind == sim::Kind::wall ? wall_set : kind == sim::Kind::elastic ? solid_set : fluid_set;
     render::ParticleSet& set = frame.particles[slot];
     set.positions.push_back(point(state.position[row]));
@@ -118,12 +161,8 @@ void FrameMaker::add_particles(render::Frame& frame, const sim::RunFrame& state)
 // material is thinner: what is closed to the blood then looks closed.
 void FrameMaker::add_shells(render::Frame& frame, const sim::RunFrame& state) const {
   const sim::RunHeader& header = run_.header();
-  render::Surface lumen;
-  lumen.name = "aorta";
-  for (const auto& v : header.lumen.vertices) lumen.vertices.emplace_back(v[0], v[1], v[2]);
-  lumen.triangles = header.lumen.triangles;
-  frame.surfaces.push_back(std::move(lumen));
-  for (const auto& shell : header.shells) {
+  frame.surfaces = {lumen_, root_};
+  for (const auto& shell : shells_) {
     const sim::RunHeader::BodyInfo& body = header.bodies.at(static_cast<std::size_t>(shell.body));
     const auto value = [&](std::size_t k, std::int64_t row) {
       return field_value(solid_fields[k], state, static_cast<std::size_t>(row), start_);

@@ -54,6 +54,8 @@ class FrameMaker {
   std::vector<std::array<double, 3>> start_;                   // positions of the first frame
   render::Bounds bounds_;                                      // of all that moves, over the run
   Eigen::Vector3f toward_leaflet_ = Eigen::Vector3f::UnitX();  // unit, across the valve's axis to the first leaflet's middle
+  std::vector<sim::RunHeader::ShellInfo> shells_;              // without what lies within the wall
+  render::Surface lumen_, root_;                               // the whole vessel, and its part about the valve
   std::vector<render::Plot> plots_;
   std::vector<std::vector<double>> series_;
   std::vector<std::string> warnings_;
@@ -63,10 +65,10 @@ class FrameMaker {
 
 // Where each kind of thing stands in the frames that FrameMaker makes. Sets and scales that a run lacks are empty, not missing.
 enum ParticleSlot { fluid_set = 0, solid_set = 1, wall_set = 2 };
-enum ScaleSlot { fluid_scale_first = 0 };  // scales: fluid_fields, then solid_fields, in order
-int scale_slot(const std::string& field);
+enum SurfaceSlot { lumen_surface = 0, root_surface = 1, first_leaflet = 2 };
+int scale_slot(const std::string& field);  // scales: fluid_fields, then solid_fields, in order
 
-// The panel of a view. `frame` holds the things already: surface 0 is the lumen (maybe empty), the others are leaflets.
+// The panel of a view. `frame` holds the things already.
 render::Panel make_panel(const View& view, const render::Frame& frame, const sim::RunHeader& header, const PictureChoice& choice,
                          const render::Bounds& bounds, const Eigen::Vector3f& toward_leaflet);
 

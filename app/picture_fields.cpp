@@ -46,6 +46,9 @@ double percentile(std::vector<float>& values, double part) {
   return *at;
 }
 
+// A range below this is round-off of something at rest: it is not spread over the colours. SI
+double least_span(const std::string& field) { return field == "displacement" ? 1e-9 : field == "speed" ? 1e-6 : 1e-3; }
+
 // Ends rounded outwards to half the power of ten below the span, so that the colour bar ends at a number that can be read.
 Range2 rounded(Range2 range) {
   const double span = range[1] - range[0];
@@ -89,6 +92,7 @@ FieldRanges field_ranges(const std::vector<const sim::RunReader*>& runs, std::si
   }
   for (auto& [field, range] : ranges) {
     if (field == "principal_stress") range[0] = std::min(range[0], 0.0);
+    range[1] = std::max(range[1], range[0] + least_span(field));
     range = rounded(range);
   }
   return ranges;

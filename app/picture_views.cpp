@@ -102,7 +102,7 @@ render::Style styled(const std::string& field, bool fluid, const render::Color& 
 }
 
 void add_leaflets(render::Panel& panel, const render::Frame& frame, const std::string& field, bool cut) {
-  for (int k = 1; k < static_cast<int>(frame.surfaces.size()); ++k) {
+  for (int k = first_leaflet; k < static_cast<int>(frame.surfaces.size()); ++k) {
     render::SurfaceLayer layer{k, styled(field, false, tissue), true, cut};
     layer.style.clipped = cut;
     layer.rim = !cut;
@@ -161,7 +161,7 @@ render::Panel valve_panel(const View& view, const render::Frame& frame, const si
   if (view.view == "short_axis") panel.clip = render::ClipPlane{annulus + (blood ? 0.7f * height : height + 0.15f * radius) * axis, axis};
   const bool cut_leaflets = blood && (along || view.view == "short_axis");
   if (!frame.surfaces[0].triangles.empty()) {
-    render::SurfaceLayer lumen{0, {-1, -1, vessel, 0.25f}};
+    render::SurfaceLayer lumen{along ? lumen_surface : root_surface, {-1, -1, vessel, 0.25f}};
     lumen.section = panel.clip.has_value();
     panel.surfaces.push_back(lumen);
   }

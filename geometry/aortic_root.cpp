@@ -23,7 +23,7 @@ struct Attempt {
   double order = 0;          // D_annulus / D_junction: smaller is the better direction
   double sinus_diameter = 0, junction_diameter = 0, prominence = 0;
   std::optional<PlaneOverride> likely_annulus;
-  std::string why;
+  std::string why, note;
 };
 
 Centreline reversed(const Centreline& line) {
@@ -99,6 +99,7 @@ struct Working {
   Lobes lobes;
   AorticRoot root;
   bool inlet_missing;
+  std::string note;  // said with the result
 };
 
 // Without an outflow tract the axis rests on the sinus's and the junction's own centres.
@@ -153,6 +154,22 @@ std::optional<PlaneOverride> guess_annulus(const TriangleMesh& lumen, const Work
   return std::nullopt;
 }
 
+// The user's plane; where the lumen does not reach down to it (a label that ends at the valve), the nearest one above that crosses it.
+RootPlane plane_inside(const TriangleMesh& lumen, const PlaneOverride& given, Working& work) {
+  Vector3d normal = given.normal.normalized();
+  if (normal.dot(work.axis.direction) < 0) normal = -normal;
+  RootPlane plane;
+  for (int step = 0; step <= 20; ++step) {
+    const double up = 0.5e-3 * step;
+    plane = measure_plane(lumen, given.center + up * normal, normal);
+    if (plane.mean_diameter < 0.55 * work.diameter) continue;
+    work.note = step == 0 ? "" : "the annulus plane that was given lies outside the lumen; moved up by " + in_millimetres(up);
+    return plane;
+  }
+  plane.mean_diameter = 0;
+  return plane;
+}
+
 std::string settle_annulus(const TriangleMesh& lumen, const TriangleTree& tree, const RootOptions& options, Working& work) {
   AorticRoot& root = work.root;
   int resolved = 0;
@@ -163,7 +180,7 @@ std::string settle_annulus(const TriangleMesh& lumen, const TriangleTree& tree, 
   }
   if (options.nadirs) root.nadirs = *options.nadirs;
   if (options.annulus) {
-    root.annulus = measure_plane(lumen, options.annulus->center, options.annulus->normal);
+    root.annulus = plane_inside(lumen, *options.annulus, work);
   } else if (!options.nadirs && (resolved < 3 || work.inlet_missing)) {
     return "the annulus is unresolved: no outflow tract below the sinuses";
   } else {
@@ -261,6 +278,7 @@ Attempt settle_root(const TriangleMesh& lumen, const TriangleTree& tree, const C
   if (options.commissures) work.root.commissures = *options.commissures;
   attempt.order = work.root.annulus.mean_diameter / work.root.sinotubular_junction.mean_diameter;
   attempt.why = doubts_about(work, options);
+  attempt.note = work.note;
   if (attempt.why.empty()) attempt.root = work.root;
   return attempt;
 }
@@ -299,6 +317,7 @@ RootSearch find_aortic_root(const TriangleMesh& lumen, const std::vector<Centrel
     if (attempt.root && (best == nullptr || attempt.order < best->order)) best = &attempt;
   if (best != nullptr) {
     search.root = best->root;
+    if (!best->note.empty()) search.warnings.push_back(best->note);
     search.centreline = best->line;
     return search;
   }

@@ -1,6 +1,7 @@
 #include "geometry/repair_cgal.h"
 
 #define CGAL_EIGEN3_ENABLED 1
+#define CGAL_NO_WARNINGS 1  // its notes on stderr are none of the user's business; what matters is reported as a defect
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/bbox.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>

@@ -186,10 +186,12 @@ void mend_manifold(TriangleMesh& mesh, double most_movement, RepairReport& repor
   const Vector3d crossing_at =
       crossings.empty() ? Vector3d(Vector3d::Zero()) : center_of(mesh, mesh.triangles[std::size_t(crossings[0][0])]);
   if (topology.non_manifold_edges == 0 && topology.mismatched_edges == 0 && crossings.empty() && flat == 0) return;
+  constexpr std::size_t most_crossings = 1500;  // pairs; removing more takes minutes and rebuilds the surface rather than mends it
+  const bool uncross = !crossings.empty() && crossings.size() <= most_crossings;
   TriangleMesh mended = mesh;
-  bool done = detail::mend_surface(mended, !crossings.empty());
+  bool done = detail::mend_surface(mended, uncross);
   double moved = done ? movement_between(mesh, mended) : 0;
-  if ((!done || moved > most_movement) && !crossings.empty()) {  // without touching the crossings
+  if ((!done || moved > most_movement) && uncross) {  // without touching the crossings
     mended = mesh;
     done = detail::mend_surface(mended, false);
     moved = done ? movement_between(mesh, mended) : 0;
@@ -209,7 +211,7 @@ void mend_manifold(TriangleMesh& mesh, double most_movement, RepairReport& repor
     report.defects.push_back({"self_intersections", crossings.size(), crossing_at, left == 0});
     if (left > 0)
       report.warnings.push_back(std::to_string(left) +
-                                " pairs of triangles still cross each other; removing them would move the surface by more than 1 %");
+                                " pairs of triangles still cross each other; removing them would change the surface too much");
   }
 }
 

@@ -9,7 +9,7 @@
 namespace geometry {
 
 struct TriangleMesh {
-  std::vector<Eigen::Vector3d> vertices;             // m
+  std::vector<Eigen::Vector3d> vertices;               // m
   std::vector<std::array<std::int32_t, 3>> triangles;  // indices into vertices; outward by the right-hand rule where closed
   bool empty() const { return triangles.empty(); }
 };

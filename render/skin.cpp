@@ -2,7 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <stdexcept>
+#include <map>
+#include <utility>
 
 namespace render {
 namespace {
@@ -175,6 +176,35 @@ std::vector<std::array<Eigen::Vector3f, 2>> section(const std::vector<Eigen::Vec
     if (found == 2) cuts.push_back({ends[0], ends[1]});
   }
   return cuts;
+}
+
+Surface cut_away(const Surface& surface, const ClipPlane& plane) {
+  Surface kept = surface;
+  kept.triangles.clear();
+  std::vector<float> height(surface.vertices.size());
+  for (std::size_t i = 0; i < height.size(); ++i) height[i] = plane.normal.dot(surface.vertices[i] - plane.point);
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> cuts;  // one new vertex an edge
+  const auto cut = [&](std::int32_t a, std::int32_t b) {
+    if (a > b) std::swap(a, b);
+    const auto [entry, fresh] = cuts.emplace(std::pair{a, b}, static_cast<std::int32_t>(kept.vertices.size()));
+    if (fresh) {
+      const float part = height[a] / (height[a] - height[b]);
+      kept.vertices.emplace_back(surface.vertices[a] + part * (surface.vertices[b] - surface.vertices[a]));
+      for (std::size_t k = 0; k < kept.fields.size(); ++k)
+        kept.fields[k].push_back(surface.fields[k][a] + part * (surface.fields[k][b] - surface.fields[k][a]));
+    }
+    return entry->second;
+  };
+  for (const auto& triangle : surface.triangles) {
+    std::vector<std::int32_t> polygon;  // the part of the triangle that stays, in its own sense of turning
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t a = triangle[k], b = triangle[(k + 1) % 3];
+      if (height[a] <= 0) polygon.push_back(a);
+      if ((height[a] <= 0) != (height[b] <= 0)) polygon.push_back(cut(a, b));
+    }
+    for (std::size_t k = 2; k < polygon.size(); ++k) kept.triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});
+  }
+  return kept;
 }
 
 }  // namespace render

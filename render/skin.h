@@ -38,4 +38,7 @@ std::vector<std::array<std::int32_t, 2>> border_edges(const std::vector<std::arr
 std::vector<std::array<Eigen::Vector3f, 2>> section(const std::vector<Eigen::Vector3f>& positions,
                                                     const std::vector<std::array<std::int32_t, 3>>& triangles, const ClipPlane& plane);
 
+// What of the surface does not lie on the side the plane's normal points to; triangles that cross it are cut along it.
+Surface cut_away(const Surface& surface, const ClipPlane& plane);
+
 }  // namespace render

@@ -1,5 +1,7 @@
 #include "sim/elastic_stress.h"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 
 #include "sim/solid_stress.h"

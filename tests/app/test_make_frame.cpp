@@ -50,7 +50,7 @@ TEST_F(MakeFrame, values_and_places_are_those_of_the_file) {
   const sim::RunReader run(valve_path_);
   const render::Frame frame = FrameMaker(run, {}, field_ranges({&run})).make(2);
   const sim::RunFrame state = run.frame(2);
-  const render::Surface& leaflet = frame.surfaces[2];
+  const render::Surface& leaflet = frame.surfaces[first_leaflet + 1];
   const std::size_t row = static_cast<std::size_t>(run.header().bodies[1].first) + 17;
   for (int k = 0; k < 3; ++k) EXPECT_FLOAT_EQ(leaflet.vertices[17][k], static_cast<float>(state.position[row][k]));
   EXPECT_EQ(leaflet.fields[field_index("stress")][17], state.von_mises[row]);

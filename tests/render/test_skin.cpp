@@ -112,6 +112,28 @@ TEST(Skin, section_of_an_octahedron_is_the_square_it_should_be) {
   EXPECT_NEAR(length, 4 * 0.5 * std::sqrt(2.0), 1e-5);
 }
 
+// Half of an octahedron, cut at z = 0.25: its surface below the plane, and the values of a linear field on the cut.
+TEST(Skin, cut_away_follows_the_plane_and_keeps_values) {
+  const DrawnMesh solid = octahedron();
+  Surface whole;
+  whole.vertices = solid.positions;
+  whole.triangles = solid.triangles;
+  whole.fields = {{1, -1, 0, 0, 0, 0}};  // = x
+  const Surface kept = cut_away(whole, {{0, 0, 0.25f}, Eigen::Vector3f::UnitZ()});
+  double area = 0;
+  for (const auto& [a, b, c] : kept.triangles) {
+    area += 0.5 * (kept.vertices[b] - kept.vertices[a]).cross(kept.vertices[c] - kept.vertices[a]).norm();
+    for (const std::int32_t i : {a, b, c}) {
+      EXPECT_LE(kept.vertices[i].z(), 0.25f + 1e-6f);
+      EXPECT_NEAR(kept.fields[0][i], kept.vertices[i].x(), 1e-6);
+    }
+  }
+  const double half = 4 * std::sqrt(3.0) / 2;  // four equilateral triangles of side sqrt 2
+  EXPECT_NEAR(area, half + half * (1 - 0.75 * 0.75), 1e-5);
+  EXPECT_EQ(cut_away(whole, {{0, 0, 2}, Eigen::Vector3f::UnitZ()}).triangles.size(), 8u);
+  EXPECT_TRUE(cut_away(whole, {{0, 0, -2}, Eigen::Vector3f::UnitZ()}).triangles.empty());
+}
+
 TEST(Skin, drawn_mesh_takes_the_chosen_field) {
   Surface surface;
   const DrawnMesh flat = grid(2);
