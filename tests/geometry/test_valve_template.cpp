@@ -91,7 +91,8 @@ TEST(ValveTemplate, LeafletsKeepToTheirSectorsSoTheyDoNotMeet) {
   }
 }
 
-// The pressure that closes it has brought the free edges to the sector planes: a slit, not a hole.
+// The pressure that closes it has brought the free edges to the sector planes: a slit, where the over-closure's surplus stands off in a
+// shallow wave, not a hole.
 TEST(ValveTemplate, FreeEdgesLieAlongTheSlit) {
   const Fitted& f = fitted();
   const LeafletSurface& leaflet = f.valve.leaflets[0];
@@ -101,8 +102,9 @@ TEST(ValveTemplate, FreeEdgesLieAlongTheSlit) {
     const double from = f.patient.frame.commissure_angles[0], to = f.patient.frame.commissure_angles[1];
     const double distance = std::min(-std::sin(from) * p.x() + std::cos(from) * p.y(), std::sin(to) * p.x() - std::cos(to) * p.y());
     near += distance < 1.6e-3;
+    EXPECT_LT(distance, 3.5e-3);
   }
-  EXPECT_GT(near, 0.9 * leaflet.columns);
+  EXPECT_GT(near, 0.75 * leaflet.columns);
 }
 
 TEST(ValveTemplate, ThreeEqualSectorsGiveThreeEqualLeaflets) {
