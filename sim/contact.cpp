@@ -170,6 +170,7 @@ void update_contact_search(Contact<D>& contact, const ShellElasticity<D>& shells
   contact.share.assign(contact.candidate.size(), 0);
   contact.row_force.assign(contact.rows.size(), Padded<D>::Zero());
   contact.row_overlap.assign(contact.rows.size(), 0);
+  contact.row_acts.assign(contact.rows.size(), 0);
 }
 
 template <int D>

@@ -65,29 +65,36 @@ Seen<D> see(Contact<D>& contact, const typename Contact<D>::Row& row, const Padd
   return seen;
 }
 
-// Penalty p = k A o (1 + (o/d)^2), o = d - s gap > 0, plus damping of the approach; never pulls. k is halved between leaflets since
-// both sides push. Forces stay along the other surface's normal.
+// Penalty p = k A o (1 + (o/d)^2), o = d - s gap > 0, plus damping of the approach; never pulls; and the film's resistance. k is halved
+// between leaflets since both sides push. Forces stay along the other surface's normal.
 template <int D>
 void evaluate_row(Contact<D>& contact, const ShellElasticity<D>& shells, const Padded<D>* x, const Padded<D>* v, const Padded<D>* normal,
                   std::int32_t index) {
   const auto& row = contact.rows[index];
   contact.row_force[index].setZero();
   contact.row_overlap[index] = 0;
+  contact.row_acts[index] = 0;
   const Seen<D> seen = see(contact, row, x, v, normal);
   if (seen.total == 0 || seen.fade == 0) return;
   const bool wall = row.other == contact.bodies;
   const std::int32_t i = row.particle;
   const double side = wall ? 1.0 : contact.side[shells.body[i] * contact.bodies + row.other];
   const double distance = contact.limit[static_cast<std::size_t>(i) * (contact.bodies + 1) + row.other];
-  const double overlap = distance - side * seen.gap;
-  if (overlap <= 0) return;
-  const double stiffness = contact.settings.stiffness * shells.area[i] * (wall ? 1.0 : 0.5) * seen.fade;
-  const double relative = overlap / distance;
-  double push = stiffness * overlap * (1 + std::min(relative * relative, 9.0));
-  if (contact.settings.damping > 0)
-    push -= contact.settings.damping * 2 * std::sqrt(stiffness * shells.mass[i]) * side * seen.normal.dot(v[i] - seen.velocity);
-  if (push <= 0) return;
-  contact.row_overlap[index] = overlap;
+  const double gap = side * seen.gap, overlap = distance - gap;
+  const double separating = side * seen.normal.dot(v[i] - seen.velocity);
+  double push = 0;
+  if (overlap > 0) {
+    const double stiffness = contact.settings.stiffness * shells.area[i] * (wall ? 1.0 : 0.5) * seen.fade;
+    const double relative = overlap / distance;
+    push = stiffness * overlap * (1 + std::min(relative * relative, 9.0));
+    if (contact.settings.damping > 0) push -= contact.settings.damping * 2 * std::sqrt(stiffness * shells.mass[i]) * separating;
+    push = std::max(push, 0.0);
+    contact.row_overlap[index] = overlap;
+  }
+  if (!wall && contact.settings.film > 0)
+    push -= std::clamp(3 - 2 * gap / distance, 0.0, 1.0) * 0.5 * contact.settings.film * shells.area[i] * seen.fade * separating;
+  if (push == 0) return;
+  contact.row_acts[index] = 1;
   contact.row_force[index] = (side * push) * seen.normal;
   const double factor = 1 / seen.total;
   for (std::int32_t c = row.first; c < row.last; ++c) contact.share[c] *= factor;
@@ -100,7 +107,7 @@ Padded<D> gather_contact(const Contact<D>& contact, std::int32_t j) {
   for (std::int32_t r = contact.row_start[j]; r < contact.row_start[j + 1]; ++r) force += contact.row_force[r];
   for (std::int32_t s = contact.reverse_start[j]; s < contact.reverse_start[j + 1]; ++s) {
     const std::int32_t r = contact.reverse_row[s];
-    if (contact.row_overlap[r] > 0) force -= contact.share[contact.reverse_candidate[s]] * contact.row_force[r];
+    if (contact.row_acts[r]) force -= contact.share[contact.reverse_candidate[s]] * contact.row_force[r];
   }
   return force;
 }

@@ -63,35 +63,54 @@ ShellSubstepReport predict_leaflets(const Scene<D>& scene, const State<D>& state
   return report;
 }
 
+namespace {
+
+// Pressure on every face of the shells from the blood's, Pa.
+template <int D>
+std::vector<double> face_pressures(const Workspace<D>& work, std::span<const double> pressure) {
+  std::vector<double> face(work.wetting.size(), 0);
+  for (std::size_t a = 0; a < face.size(); ++a)
+    for (const auto& link : work.wetting[a]) face[a] += link.weight * pressure[link.unknown];
+  film_pressure(work.film, face);
+  return face;
+}
+
+// Its transpose: adds volumes displaced at the faces to the blood's.
+template <int D>
+void displace_blood(const Workspace<D>& work, std::vector<double>& face, std::span<double> volume) {
+  film_outflow(work.film, face);
+  for (std::size_t a = 0; a < face.size(); ++a)
+    if (face[a] != 0)
+      for (const auto& link : work.wetting[a]) volume[link.unknown] += link.weight * face[a];
+}
+
+}  // namespace
+
 template <int D>
 void couple_leaflets(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt) {
   const ShellElasticity<D>& shells = *scene.shells;
   const Index n = static_cast<Index>(scene.shell_count), first = static_cast<Index>(scene.elastic_count);
   work.coupling.clear();
-  work.coupling_of.assign(n, -1);
+  std::vector<double> displaced(2 * n, 0);
   for (Index s = 0; s < n; ++s) {
-    const auto &plus = work.wetting[2 * s], &minus = work.wetting[2 * s + 1];
-    if (plus.empty() || minus.empty() || shells.fixed[s]) continue;
+    if (shells.fixed[s]) continue;
     const double area = work.shell_area[s];
     const double jump = (work.shell_free_velocity[s] - state.velocity[first + s]).dot(work.shell_normal[s]);
-    typename Workspace<D>::Coupling c;
-    c.strength = area * area / (shells.mass[s] + work.shell_local_mass[s]);
-    for (const auto& link : plus) c.links.push_back({link.unknown, link.weight});
-    for (const auto& link : minus) c.links.push_back({link.unknown, -link.weight});
-    for (const auto& link : c.links) work.source[link.unknown] += link.weight * area * jump / dt;
-    work.coupling_of[s] = static_cast<std::int32_t>(work.coupling.size());
-    work.coupling.push_back(std::move(c));
+    work.coupling.push_back({static_cast<std::int32_t>(s), area * area / (shells.mass[s] + work.shell_local_mass[s])});
+    displaced[2 * s] = area * jump / dt;
+    displaced[2 * s + 1] = -displaced[2 * s];
   }
+  displace_blood<D>(work, displaced, work.source);
 }
 
 template <int D>
 void apply_coupling(const Workspace<D>& work, std::span<const double> x, std::span<double> y) {
+  std::vector<double> face = face_pressures<D>(work, x), moved(face.size(), 0);
   for (const auto& c : work.coupling) {
-    double sum = 0;
-    for (const auto& link : c.links) sum += link.weight * x[link.unknown];
-    sum *= c.strength;
-    for (const auto& link : c.links) y[link.unknown] += sum * link.weight;
+    moved[2 * c.shell] = c.strength * (face[2 * c.shell] - face[2 * c.shell + 1]);
+    moved[2 * c.shell + 1] = -moved[2 * c.shell];
   }
+  displace_blood<D>(work, moved, y);
 }
 
 template <int D>
@@ -105,14 +124,14 @@ SymmetricMatrix matrix_for_multigrid(const Workspace<D>& work) {
   SymmetricMatrix a;
   a.diagonal = work.matrix.diagonal;
   for (const auto& c : work.coupling) {
-    std::vector<typename Workspace<D>::WetLink> side[2];
-    for (const auto& link : c.links) side[link.weight > 0 ? 0 : 1].push_back(link);
+    std::vector<typename Workspace<D>::WetLink> side[2] = {work.wetting[2 * c.shell], work.wetting[2 * c.shell + 1]};
+    if (work.wet_share[2 * c.shell] < 0.5 || work.wet_share[2 * c.shell + 1] < 0.5) continue;
     for (auto& s : side) {
-      std::stable_sort(s.begin(), s.end(), [](const auto& p, const auto& q) { return std::abs(p.weight) > std::abs(q.weight); });
+      std::stable_sort(s.begin(), s.end(), [](const auto& p, const auto& q) { return p.weight > q.weight; });
       if (s.size() > strongest) s.resize(strongest);
       double sum = 0;
-      for (const auto& link : s) sum += std::abs(link.weight);
-      for (auto& link : s) link.weight = std::abs(link.weight) / sum;
+      for (const auto& link : s) sum += link.weight;
+      for (auto& link : s) link.weight /= sum;
     }
     for (const auto& p : side[0])
       for (const auto& q : side[1]) {
@@ -148,15 +167,9 @@ template <int D>
 void correct_leaflets(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt) {
   const ShellElasticity<D>& shells = *scene.shells;
   const Index n = static_cast<Index>(scene.shell_count), first = static_cast<Index>(scene.elastic_count);
+  const std::vector<double> face = face_pressures<D>(work, work.solution);
   for (Index s = 0; s < n; ++s) {
-    auto side_pressure = [&](const std::vector<typename Workspace<D>::WetLink>& links, double otherwise) {
-      double p = 0;
-      for (const auto& link : links) p += link.weight * work.solution[link.unknown];
-      return links.empty() ? otherwise : p;
-    };
-    const auto &plus = work.wetting[2 * s], &minus = work.wetting[2 * s + 1];
-    double p_plus = side_pressure(plus, 0), p_minus = side_pressure(minus, p_plus);
-    if (plus.empty()) p_plus = p_minus;
+    const double p_plus = face[2 * s], p_minus = face[2 * s + 1];
     state.pressure_plus[s] = p_plus;
     state.pressure_minus[s] = p_minus;
     state.pressure[first + s] = 0.5 * (p_plus + p_minus);

@@ -1,7 +1,7 @@
 // Leaflets and blood in one projection (docs/equations.md; numerics-coupling.md "B2" with the sides' pressures eliminated).
 //
-// Shell particle b with normal N, area A, mass m feels p+ and p- of the blood that wets its sides, p = sum w_i p_i with sum w_i = 1, and
-// pushes the same blood out of its way with the same weights:
+// Shell particle b with normal N, area A, mass m feels p+ and p- of the blood that wets its sides, p = sum w_i p_i with sum w_i = 1
+// (through the film of gap_film.h where none does), and pushes the same blood out of its way with the same weights:
 //   v_b = v^_b - dt/m A (p+ - p-) N
 //   volume balance of blood i (times V):  ... = ... + sum_b s w_i A (v_b - v_b^n).N / dt,  s = +1 on the normal's side, -1 on the other.
 // where m is, along the normal, the leaflet's own mass plus that of the blood within its lattice layer, rho A (l0 - h): a leaflet particle

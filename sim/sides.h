@@ -11,6 +11,7 @@ template <int D>
 struct SheetGeometry {
   std::vector<std::array<std::int32_t, D>> elements;   // State rows
   std::vector<std::int32_t> incident_start, incident;  // per shell row: elements that hold it
+  std::vector<std::int32_t> neighbor_start, neighbor;  // per shell row: rows that share an element
   std::vector<std::uint8_t> edge;                      // per shell row: on the sheet's boundary
 };
 template <int D>
@@ -21,7 +22,8 @@ SheetGeometry<D> make_sheet_geometry(const ShellElasticity<D>& shells);
 template <int D>
 void cut_links(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
 
-// For each shell row and side (0: normal's side, 1: the other) the blood that wets it: rows and normalised weights.
+// For each face of a shell row (0: normal's side, 1: the other) the blood that wets it: rows, normalised weights and how wet it is; and the
+// film that joins the faces that no blood reaches (gap_film.h).
 template <int D>
 void wetted_sides(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
 

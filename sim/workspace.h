@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim/gap_film.h"
 #include "sim/contact.h"
 #include "sim/linear_solver.h"
 #include "sim/neighbors.h"
@@ -73,16 +74,16 @@ struct Workspace {
     std::int32_t unknown;
     double weight;
   };
-  std::vector<std::vector<WetLink>> wetting;  // 2 s + side: blood that wets shell row s on its + (0) or - (1) side, weights sum to 1
-  std::vector<double> support;                    // fluid rows: 1, or less where leaflets hide so much of the blood around that its volume
-                                                  // balance cannot be told (0 below 0.25 n0 of visible blood, 1 above 0.5 n0)
-  std::vector<std::uint8_t> wet_side;         // 2 s + side: 1 = wetted itself, 0 = dry (weights taken from mesh neighbours)
+  std::vector<std::vector<WetLink>> wetting;  // face 2 s + side: blood that wets shell row s on its + (0) or - (1) side, weights sum to 1
+  std::vector<double> support;                // fluid rows: 1, or less where leaflets hide so much of the blood around that its volume
+                                              // balance cannot be told (0 below 0.25 n0 of visible blood, 1 above 0.5 n0)
+  std::vector<double> wet_share;              // face: 1 wet, 0 dry
+  GapFilm film;                               // pressure on the faces that are not fully wet
   struct Coupling {
-    double strength;             // A²/m, m⁴/kg
-    std::vector<WetLink> links;  // + side positive, - side negative
+    std::int32_t shell;  // shell row
+    double strength;     // A²/m, m⁴/kg
   };
-  std::vector<Coupling> coupling;
-  std::vector<std::int32_t> coupling_of;  // per shell row, -1 where it is held or dry
+  std::vector<Coupling> coupling;  // rows that are free to move
   struct SideMemory {
     std::int32_t element = -1;
     std::int8_t side = 0;
