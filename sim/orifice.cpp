@@ -3,12 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <stdexcept>
 
 #include "sim/point_grid.h"
-#include "sim/shell_kernel.h"
 
 namespace sim {
 namespace {
@@ -31,16 +28,16 @@ Projection make_projection(const ValveFrame& valve) {
 // Lumen radius by direction: the outermost held row at the leaflets' base, in 5-degree bins; empty bins between neighbours' values.
 class LumenRadius {
  public:
-  LumenRadius(const ShellElasticity<3>& shells, const Projection& project, double fallback) : radius_(bins, 0.0) {
+  LumenRadius(const ValveSheet& sheet, const Projection& project) : radius_(bins, 0.0) {
     bool any = false;
-    for (std::int32_t i = 0; i < static_cast<std::int32_t>(shells.size()); ++i) {
-      if (!shell_kernel::is_clamped(shells, i) || shells.membrane_weight[i] == 0) continue;
-      const Vector2d p = project(shells.rest_position[i]);
+    for (std::size_t i = 0; i < sheet.size(); ++i) {
+      if (!sheet.held[i]) continue;
+      const Vector2d p = project(sheet.rest[i]);
       double& r = radius_[bin(p)];
       r = std::max(r, p.norm());
       any = true;
     }
-    if (!any) std::fill(radius_.begin(), radius_.end(), fallback);
+    if (!any) std::fill(radius_.begin(), radius_.end(), sheet.frame.commissure_radius);
     const std::vector<double> found = radius_;
     for (int b = 0; b < bins; ++b) {
       int before = b, after = b;
@@ -99,6 +96,23 @@ void cover(Raster& raster, const std::array<Vector2d, 3>& triangle, double reach
     }
 }
 
+// Open pixels within `reach` of an open pixel of `core`; the rest of them closed.
+void keep_near(Raster& raster, const std::vector<std::uint8_t>& core, double reach) {
+  const int pixels = static_cast<int>(std::ceil(reach / raster.pixel));
+  const double limit = std::pow(reach / raster.pixel + 0.5, 2);
+  const auto near_core = [&](int i, int j) {
+    for (int b = std::max(0, j - pixels); b <= std::min(raster.size - 1, j + pixels); ++b)
+      for (int a = std::max(0, i - pixels); a <= std::min(raster.size - 1, i + pixels); ++a)
+        if (core[static_cast<std::size_t>(b) * raster.size + a] && (a - i) * (a - i) + (b - j) * (b - j) <= limit) return true;
+    return false;
+  };
+  for (int j = 0; j < raster.size; ++j)
+    for (int i = 0; i < raster.size; ++i) {
+      const std::size_t at = static_cast<std::size_t>(j) * raster.size + i;
+      if (raster.open[at] && !core[at] && !near_core(i, j)) raster.open[at] = 0;
+    }
+}
+
 // Flood fill over open pixels sharing a side; returns the largest component's pixel count and clears the raster.
 std::size_t largest_component(Raster& raster) {
   std::size_t largest = 0;
@@ -128,11 +142,10 @@ std::size_t largest_component(Raster& raster) {
 
 }  // namespace
 
-OrificeArea geometric_orifice_area(const ShellElasticity<3>& shells, std::span<const Vector3d> position, const ValveFrame& valve,
-                                   double half_thickness, double resolution) {
-  if (shells.elements.empty()) throw std::invalid_argument("orifice area: the leaflets have no triangle mesh");
-  const Projection project = make_projection(valve);
-  const LumenRadius lumen(shells, project, valve.commissure_radius);
+OrificeArea geometric_orifice_area(const ValveSheet& sheet, std::span<const Vector3d> position, double half_thickness, double half_contact,
+                                   double resolution) {
+  const Projection project = make_projection(sheet.frame);
+  const LumenRadius lumen(sheet, project);
   Raster raster;
   raster.pixel = resolution;
   raster.size = 2 * static_cast<int>(std::ceil(lumen.largest() / resolution)) + 2;
@@ -141,8 +154,18 @@ OrificeArea geometric_orifice_area(const ShellElasticity<3>& shells, std::span<c
   for (int j = 0; j < raster.size; ++j)
     for (int i = 0; i < raster.size; ++i)
       raster.open[static_cast<std::size_t>(j) * raster.size + i] = lumen.inside(raster.center(i, j), resolution);
-  for (const auto& element : shells.elements)
-    cover(raster, {project(position[element[0]]), project(position[element[1]]), project(position[element[2]])}, half_thickness);
+  const auto cover_all = [&](double reach) {
+    for (const auto& element : sheet.elements)
+      cover(raster, {project(position[element[0]]), project(position[element[1]]), project(position[element[2]])}, reach);
+  };
+  cover_all(half_thickness);
+  if (half_contact > half_thickness) {
+    const std::vector<std::uint8_t> seen = raster.open;
+    cover_all(half_contact);
+    const std::vector<std::uint8_t> core = raster.open;
+    raster.open = seen;
+    keep_near(raster, core, half_contact - half_thickness);
+  }
   OrificeArea result;
   const double pixel_area = resolution * resolution;
   result.area = pixel_area * static_cast<double>(std::count(raster.open.begin(), raster.open.end(), 1));
@@ -150,28 +173,37 @@ OrificeArea geometric_orifice_area(const ShellElasticity<3>& shells, std::span<c
   return result;
 }
 
-Coaptation coaptation(const ShellElasticity<3>& shells, std::span<const Vector3d> position, double distance) {
+Coaptation coaptation(const ValveSheet& sheet, std::span<const Vector3d> position, double distance) {
   Coaptation result;
   const PointGrid<3> grid(position, distance);
-  std::vector<Vector3d> normal(shells.size());
-  std::vector<double> area(shells.size());
-  shell_normals_and_areas<3>(shells, position, normal, area);
-  for (std::int32_t i = 0; i < static_cast<std::int32_t>(shells.size()); ++i) {
-    if (shell_kernel::is_clamped(shells, i)) continue;
+  std::vector<Vector3d> normal;
+  std::vector<double> area;
+  sheet_normals_and_areas(sheet, position, normal, area);
+  double tips = 0;
+  for (std::size_t i = 0; i < sheet.size(); ++i) {
+    if (sheet.held[i]) continue;
     bool touches = false;
-    grid.for_each_near(position[i], distance, [&](std::int32_t j, double) { touches = touches || shells.body[j] != shells.body[i]; });
-    if (touches) result.area += 0.5 * area[i];
+    grid.for_each_near(position[i], distance, [&](std::int32_t j, double) {
+      touches = touches || sheet.leaflet[static_cast<std::size_t>(j)] != sheet.leaflet[i];
+    });
+    if (!touches) continue;
+    result.area += 0.5 * area[i];
+    const ValveSheet::Leaflet& leaflet = sheet.leaflets[static_cast<std::size_t>(sheet.leaflet[i])];
+    if (leaflet.tip < 0) continue;
+    const Vector3d side = sheet.frame.axis.cross(leaflet.outward);
+    if (std::abs(side.dot(sheet.rest[i] - sheet.rest[static_cast<std::size_t>(leaflet.tip)])) < 1.5 * sheet.spacing)
+      result.central += area[i] / (3 * sheet.spacing);
   }
-  std::map<std::pair<std::int32_t, std::int32_t>, int> uses;  // edges of one triangle only, not on the attachment: the free edge
-  for (const auto& element : shells.elements)
-    for (int k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax(element[k], element[(k + 1) % 3]);
-      ++uses[{low, high}];
-    }
-  for (const auto& [edge, count] : uses)
-    if (count == 1 && !(shell_kernel::is_clamped(shells, edge.first) && shell_kernel::is_clamped(shells, edge.second)))
-      result.length += 0.5 * (position[edge.first] - position[edge.second]).norm();
+  for (const ValveSheet::Leaflet& leaflet : sheet.leaflets) {
+    for (std::size_t i = 1; i < leaflet.free_edge.size(); ++i)
+      result.length += 0.5 * (position[leaflet.free_edge[i]] - position[leaflet.free_edge[i - 1]]).norm();
+    if (leaflet.tip < 0) continue;
+    ++tips;
+    result.effective_height += sheet.frame.axis.dot(position[leaflet.tip] - sheet.frame.annulus_center);
+  }
   result.height = result.length > 0 ? result.area / result.length : 0;
+  result.central /= std::max<double>(1, static_cast<double>(sheet.leaflets.size()));
+  result.effective_height /= std::max(1.0, tips);
   return result;
 }
 

@@ -4,8 +4,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "sim/scene_description.h"
-#include "sim/shell.h"
+#include "sim/valve_sheet.h"
 
 namespace sim {
 
@@ -14,18 +13,21 @@ struct OrificeArea {
   double largest_opening = 0;  // m2: the largest connected one
 };
 
-// Geometric orifice area. The leaflets' triangles, thickened by half_thickness (half the contact distance: leaflets that touch are closed),
-// are projected along the valve's axis on a raster of `resolution` m. Its region is the lumen as the attachments see it: within r(theta) of
-// the held rows at the leaflets' base (commissure_radius where there are none). What stays uncovered there is open. Throws
-// std::invalid_argument where the shells have no mesh.
-OrificeArea geometric_orifice_area(const ShellElasticity<3>& shells, std::span<const Eigen::Vector3d> position, const ValveFrame& valve,
-                                   double half_thickness, double resolution = 1e-4);
+// Geometric orifice area, as planimetry in short-axis view measures it: what is seen through, along the valve's axis, between the leaflets.
+// The leaflets' triangles, thickened by half_thickness (half the tissue's thickness), are projected along the axis on a raster of
+// `resolution` m. The region is the lumen as the attachments see it: within r(theta) of the held rows (commissure_radius where there are
+// none). What stays uncovered is open, but for gaps narrower than 2 half_contact: the model lets leaflets touch at that distance of their
+// mid-surfaces, so such gaps are closed (morphological opening of the uncovered region with a disc of half_contact - half_thickness).
+OrificeArea geometric_orifice_area(const ValveSheet& sheet, std::span<const Eigen::Vector3d> position, double half_thickness,
+                                   double half_contact, double resolution = 1e-4);
 
 struct Coaptation {
-  double area = 0;    // m2: leaflet area within `distance` of another leaflet, mean of the two sides
-  double length = 0;  // m: half the sum of the free edges
-  double height = 0;  // m: area / length
+  double area = 0;     // m2: leaflet area within `distance` of another leaflet, mean of the two sides
+  double length = 0;   // m: half the sum of the free edges
+  double height = 0;   // m: area / length
+  double central = 0;  // m: the same along the leaflets' mid-lines: touching area of a strip of 3 l0 about them, over its width; mean
+  double effective_height = 0;  // m: of the free edges' middles over the annulus plane, mean of the leaflets (Schaefers' eH)
 };
-Coaptation coaptation(const ShellElasticity<3>& shells, std::span<const Eigen::Vector3d> position, double distance);
+Coaptation coaptation(const ValveSheet& sheet, std::span<const Eigen::Vector3d> position, double distance);
 
 }  // namespace sim

@@ -3,53 +3,62 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/orifice.h"
+#include "sim/elastic_stress.h"
 #include "sim/probe_moment.h"
 #include "sim/run_layout.h"
 #include "sim/stress.h"
+#include "sim/valve_metrics.h"
 
 namespace sim {
 namespace {
 
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) return 0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-// 99.5th percentile of the blood's speed from the annulus to 15 mm beyond the commissures.
-double jet_speed(const Scene<3>& scene, const State<3>& state) {
-  const ValveFrame& valve = *scene.description.valve;
-  std::vector<double> speed;
-  for (std::size_t row = static_cast<std::size_t>(scene.first_fluid); row < state.size(); ++row) {
-    const double height = (state.position[row] - valve.annulus_center).dot(valve.axis);
-    if (height > 0 && height < valve.commissure_height + 0.015) speed.push_back(state.velocity[row].norm());
-  }
-  return quantile(std::move(speed), 0.995);
-}
-
-// 99th percentile of von Mises stress over the leaflets, rows nearer than 2 l0 to where they are held left out (a clamp is singular).
-double leaflet_stress(const Scene<3>& scene, const State<3>& state) {
-  const double l0 = scene.description.spacing;
-  const InitialParticles<3>& rest = scene.description.particles;
-  const std::vector<Eigen::Matrix3d> stress = elastic_stress(scene, state);
-  std::vector<Eigen::Vector3d> held;
-  for (std::size_t row = static_cast<std::size_t>(scene.elastic_count); row < stress.size(); ++row)
-    if (rest.fixed[row]) held.push_back(rest.position[row]);
-  const PointGrid<3> grid(std::span<const Eigen::Vector3d>(held), 2 * l0);
-  std::vector<double> values;
-  for (std::size_t row = static_cast<std::size_t>(scene.elastic_count); row < stress.size(); ++row) {
-    bool near_clamp = false;
-    grid.for_each_near(rest.position[row], 2 * l0, [&](std::int32_t, double) { near_clamp = true; });
-    if (!near_clamp) values.push_back(von_mises(stress[row]));
-  }
-  return quantile(std::move(values), 0.99);
-}
-
 template <int D>
 bool has_valve(const Scene<D>& scene) {
   return D == 3 && scene.description.valve && scene.shells;
+}
+
+Rheology blood_of(const Scene<3>& scene) {
+  for (const Body& body : scene.description.bodies)
+    if (body.kind == Kind::fluid) return body.fluid.rheology;
+  return Newtonian{};
+}
+
+// Mean of what comes in from the ventricle and what leaves to the aorta; the walls are rigid, so they differ by noise alone.
+double valve_flow(const ValveFrame& valve, const std::vector<double>& port_flow) {
+  double flow = 0;
+  int ends = 0;
+  for (const auto& [port, sign] : {std::pair{valve.ventricle_port, 1.0}, std::pair{valve.aorta_port, -1.0}})
+    if (port >= 0 && port < static_cast<std::int32_t>(port_flow.size())) flow += sign * port_flow[static_cast<std::size_t>(port)], ++ends;
+  return ends > 0 ? flow / ends : 0;
+}
+
+ValveMoment moment_of(const Scene<3>& scene, const State<3>& state, const ValveSheet& sheet, const std::vector<double>& port_pressure) {
+  const ValveFrame& valve = *scene.description.valve;
+  ValveMoment moment;
+  const std::vector<Eigen::Matrix3d> stress = elastic_stress(scene, state);
+  for (const std::int64_t signed_row : sheet.row) {
+    const auto row = static_cast<std::size_t>(signed_row);
+    moment.position.push_back(state.position[row]), moment.velocity.push_back(state.velocity[row]);
+    moment.von_mises.push_back(von_mises(stress[row])), moment.principal.push_back(principal_stresses(stress[row])[0]);
+  }
+  const auto first = static_cast<std::ptrdiff_t>(scene.first_fluid);
+  moment.blood_position.assign(state.position.begin() + first, state.position.end());
+  moment.blood_velocity.assign(state.velocity.begin() + first, state.velocity.end());
+  moment.flow = valve_flow(valve, state.port_flow);
+  const auto pressure = [&](std::int32_t port) { return port >= 0 ? port_pressure[static_cast<std::size_t>(port)] : 0; };
+  if (valve.ventricle_port >= 0 && valve.aorta_port >= 0)
+    moment.pressure_difference = pressure(valve.ventricle_port) - pressure(valve.aorta_port);
+  return moment;
+}
+
+// The figures with every value at rest: for their names and units.
+std::vector<NamedValue> figures_at_rest(const Scene<3>& scene) {
+  const ValveSheet sheet = make_valve_sheet(scene);
+  ValveMoment moment;
+  moment.position = sheet.rest;
+  moment.velocity.assign(sheet.size(), Eigen::Vector3d::Zero());
+  moment.von_mises.assign(sheet.size(), 0), moment.principal = moment.von_mises;
+  return valve_metrics(sheet, moment, Newtonian{});
 }
 
 }  // namespace
@@ -72,14 +81,9 @@ std::vector<Column> metric_columns(const Scene<D>& scene) {
     columns.push_back({"port." + port.name + ".pressure", "Pa"});
     columns.push_back({"port." + port.name + ".volume", D == 3 ? "m3" : "m2"});
   }
-  if (has_valve(scene))
-    for (const Column& column : std::vector<Column>{{"orifice_area", "m2"},
-                                                    {"largest_opening", "m2"},
-                                                    {"coaptation_area", "m2"},
-                                                    {"coaptation_height", "m"},
-                                                    {"jet_speed", "m/s"},
-                                                    {"leaflet_stress_p99", "Pa"}})
-      columns.push_back(column);
+  if constexpr (D == 3)
+    if (has_valve(scene))
+      for (const NamedValue& figure : figures_at_rest(scene)) columns.push_back({figure.name, figure.units});
   columns.push_back({"particles", "1"});
   columns.push_back({"step_size", "s"});
   State<D> any;
@@ -98,25 +102,22 @@ std::vector<double> metric_values(const Scene<D>& scene, const State<D>& state, 
   double fastest = 0;
   for (const Vector<D>& velocity : state.velocity) fastest = std::max(fastest, velocity.squaredNorm());
   values.push_back(std::sqrt(fastest));
+  std::vector<double> port_pressure;
   if (!scene.description.ports.empty()) {
     ProbeMoment<D> moment(scene, state, scratch);
     for (std::size_t k = 0; k < scene.description.ports.size(); ++k) {
       const Port<D>& port = scene.description.ports[k];
       values.push_back(k < state.port_flow.size() ? state.port_flow[k] : 0);
-      values.push_back(moment.pressure_at(port.point - 2 * scene.description.spacing * port.normal, -1));
+      port_pressure.push_back(moment.pressure_at(port.point - 2 * scene.description.spacing * port.normal, -1));
+      values.push_back(port_pressure.back());
       values.push_back(k < state.port_volume.size() ? state.port_volume[k] : 0);
     }
   }
   if constexpr (D == 3) {
     if (has_valve(scene)) {
-      const std::span<const Eigen::Vector3d> position(state.position.data() + scene.elastic_count,
-                                                      static_cast<std::size_t>(scene.shell_count));
-      const double contact = 0.8 * scene.description.spacing;
-      const OrificeArea orifice = geometric_orifice_area(*scene.shells, position, *scene.description.valve, 0.5 * contact);
-      const Coaptation closed = coaptation(*scene.shells, position, 1.5 * contact);
-      for (double value : {orifice.area, orifice.largest_opening, closed.area, closed.height}) values.push_back(value);
-      values.push_back(jet_speed(scene, state));
-      values.push_back(leaflet_stress(scene, state));
+      const ValveSheet sheet = make_valve_sheet(scene);
+      for (const NamedValue& figure : valve_metrics(sheet, moment_of(scene, state, sheet, port_pressure), blood_of(scene)))
+        values.push_back(figure.value);
     }
   }
   values.push_back(static_cast<double>(state.size()));
