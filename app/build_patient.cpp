@@ -64,7 +64,7 @@ Vessel imported_vessel(const PatientSpec& patient) {
 geometry::ValveOptions valve_options(const SceneFile& scene, const BodySpec& leaflets) {
   geometry::ValveOptions options;
   options.thickness = leaflets.elastic.thickness > 0 ? leaflets.elastic.thickness : options.thickness;
-  options.sector_offset = 0.5 * options.thickness + 0.5 * scene.spacing;
+  options.sector_offset = 0.5 * options.thickness + 0.25 * scene.spacing;
   if (scene.patient->over_closure) options.over_closure = *scene.patient->over_closure;
   if (scene.patient->coaptation) options.coaptation_ratio = *scene.patient->coaptation;
   return options;

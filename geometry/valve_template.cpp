@@ -211,6 +211,11 @@ std::vector<Vector3d> relaxed_reference(const Sector& sector, const std::vector<
   for (std::size_t i = 0; i < position.size(); ++i)
     if (!problem.fixed[i]) draw_into_sector(sector, options.sector_offset, position[i]);
   relax_membrane(problem, position);
+  // With compression resisted in full and more bending, creases open into smooth waves of the same length.
+  problem.compression_share = 1;
+  problem.bending = options.reference_bending * problem.tension_modulus;
+  problem.iterations = options.reference_iterations;
+  relax_membrane(problem, position);
   return position;
 }
 

@@ -16,12 +16,14 @@ struct ValveOptions {
   double free_edge_angle = 0.5585;      // phi, rad (32 deg): slope of the free edge against the sector's plane
   double coaptation_ratio = 0.3;        // Xs / Rc, central coaptation height
   double over_closure = 1e-3;           // d, m past the axis
-  double sector_offset = 1e-3;          // g, m: sector planes moved off the commissure planes; about half thickness + l0/2
+  double sector_offset = 1e-3;          // g, m: sector planes moved off the commissure planes; about half thickness + l0/4
   double attachment_exponent = 0.55;    // q: 0.5 an ellipse, 1 a parabola
   double surplus = 1.03;                // profile length over the chord
   double thickness = 0.5e-3;            // m, material
   double reference_pressure = 133.322;  // Pa: the reference is relaxed under it (1 mmHg)
   double reference_modulus = 2e6;       // Pa, of the relaxing membrane
+  double reference_bending = 5e-3;      // of the tension stiffness, on second differences, in the second relaxing, which opens creases
+  int reference_iterations = 4000;
   int columns = 49, rows = 25;          // of the structured surface (w along the attachment, u from attachment to free edge)
   double wall_inset = 0;                // m: the attachment is put this far inside the wall
 };

@@ -66,7 +66,7 @@ Contact<D> build_contact(const SceneDescription<D>& description, const ShellElas
   contact.settings = settings;
   contact.bodies = static_cast<std::int32_t>(shells.bodies.size());
   const double l0 = description.spacing;
-  if (contact.settings.distance <= 0) contact.settings.distance = 0.8 * l0;
+  if (contact.settings.distance <= 0) contact.settings.distance = 0.5 * l0;
   if (contact.settings.wall_distance <= 0) contact.settings.wall_distance = 0.5 * l0;
   for (const ShellBody& body : shells.bodies) contact.spacing = std::max(contact.spacing, body.spacing);
   contact.reach = std::max(reach_in_spacings * contact.spacing, 1.6 * contact.settings.distance);

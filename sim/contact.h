@@ -15,7 +15,7 @@
 namespace sim {
 
 struct ContactSettings {
-  double distance = 0;     // m: gap at which leaflets start to push; 0 = 0.8 l0. Per particle at most 0.9 of its initial gap
+  double distance = 0;     // m: gap at which leaflets start to push; 0 = 0.5 l0. Per particle at most 0.9 of its initial gap
   double stiffness = 5e7;  // Pa/m, sum of both directions
   double damping = 0;      // of critical, on the approach speed
   // Pa s/m: resistance of the film of blood between leaflets to being squeezed out or drawn in, below 1.5 contact distances. Reynolds:

@@ -1,6 +1,5 @@
 #include "sim/step.h"
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -13,6 +12,7 @@
 #include "sim/shifting.h"
 #include "sim/sides.h"
 #include "sim/solid_coupling.h"
+#include "sim/stage.h"
 #include "sim/walls.h"
 
 namespace sim {
@@ -76,52 +76,73 @@ void check_step(const Scene<D>& scene, const State<D>& state, double dt) {
 }
 
 template <int D>
-void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
-  find_neighborhood(scene, state, work);
-  prescribe_ports<D>(scene, state, &work, state.time + dt);
-  wall_grip(scene, state, work);
-  moment_matrices(scene, state, work);
-  velocity_gradients(scene, state, work);
-  body_accelerations(scene, state, work);
-  if (scene.description.scheme.subparticle_dissipation > 0) add_subparticle_dissipation(scene, state, work);
-  if (scene.viscosity) {
-    particle_viscosity(scene, state, work);
-    if (scene.viscosity->corrected) add_laplacian_correction(scene, state, work);
-    work.boundary_force.assign(static_cast<std::size_t>(scene.elastic_count + scene.shell_count), Vector<D>::Zero());
-    report.viscosity_iterations = solve_viscosity<D>(scene, state, work, dt, work.boundary_force).iterations;
-  }
-  number_unknowns(scene, state, work);
-  if (scene.solids) report.elastic_substeps = predict_solids(scene, state, work, dt);
-  pressure_poisson(scene, state, work, dt);
-  if (scene.shells) {
-    report.elastic_substeps = predict_leaflets(scene, state, work, dt).substeps;
-    wetted_sides(scene, state, work);
-    couple_leaflets(scene, state, work, dt);
-    remember_sides(scene, state, work);
-  }
+void viscosity_stage(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
+  if (!scene.viscosity) return;
+  const StageClock clock(work.stage_seconds, Stage::viscosity);
+  particle_viscosity(scene, state, work);
+  if (scene.viscosity->corrected) add_laplacian_correction(scene, state, work);
+  work.boundary_force.assign(static_cast<std::size_t>(scene.elastic_count + scene.shell_count), Vector<D>::Zero());
+  report.viscosity_iterations = solve_viscosity<D>(scene, state, work, dt, work.boundary_force).iterations;
+}
+
+template <int D>
+void pressure_stage(const Scene<D>& scene, State<D>& state, Workspace<D>& work, StepReport& report) {
   const SolveReport solve = solve_pressure(scene, state, work);
   report.pressure_iterations = solve.iterations;
   report.pressure_residual = solve.residual;
   if (!solve.converged && solve.residual > 100 * scene.description.scheme.pressure_tolerance)
     throw NumericalFailure("the pressure equation did not converge");
   state.ledger.pressure_iterations += solve.iterations;
-  pressure_gradients(scene, state, work);
-  if (scene.shells) correct_leaflets(scene, state, work, dt);
-  if (scene.solids) correct_solids(scene, state, work, dt);
-  shifting_displacement(scene, state, work, dt);
-  advance_fluid(scene, state, work, dt);
-  if (scene.sheet) stick_in_gaps(state, work);
-  shift_particles(scene, state, work);
-  separate_particles(scene, state, work);
-  if (scene.sheet) keep_sides(scene, state, work);
-  exchange_through_ports(scene, state, dt);
-  remove_escaped(scene, state);
-  wrap_positions(scene, state);
+}
+
+template <int D>
+void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
+  std::vector<double>& clocks = work.stage_seconds;
+  timed(clocks, Stage::neighbors, [&] { find_neighborhood(scene, state, work); });
+  timed(clocks, Stage::ports_and_walls, [&] {
+    prescribe_ports<D>(scene, state, &work, state.time + dt);
+    wall_grip(scene, state, work);
+  });
+  timed(clocks, Stage::velocity_gradients, [&] {
+    moment_matrices(scene, state, work);
+    velocity_gradients(scene, state, work);
+    body_accelerations(scene, state, work);
+    if (scene.description.scheme.subparticle_dissipation > 0) add_subparticle_dissipation(scene, state, work);
+  });
+  viscosity_stage(scene, state, work, dt, report);
+  number_unknowns(scene, state, work);
+  if (scene.solids) timed(clocks, Stage::elastic, [&] { report.elastic_substeps = predict_solids(scene, state, work, dt); });
+  timed(clocks, Stage::pressure_assembly, [&] { pressure_poisson(scene, state, work, dt); });
+  if (scene.shells) {
+    timed(clocks, Stage::elastic, [&] { report.elastic_substeps = predict_leaflets(scene, state, work, dt).substeps; });
+    const StageClock clock(clocks, Stage::leaflet_coupling);
+    wetted_sides(scene, state, work);
+    couple_leaflets(scene, state, work, dt);
+    remember_sides(scene, state, work);
+  }
+  pressure_stage(scene, state, work, report);
+  timed(clocks, Stage::pressure_gradient, [&] { pressure_gradients(scene, state, work); });
+  if (scene.shells) timed(clocks, Stage::leaflet_coupling, [&] { correct_leaflets(scene, state, work, dt); });
+  if (scene.solids) timed(clocks, Stage::elastic, [&] { correct_solids(scene, state, work, dt); });
+  timed(clocks, Stage::motion, [&] {
+    shifting_displacement(scene, state, work, dt);
+    advance_fluid(scene, state, work, dt);
+    if (scene.sheet) stick_in_gaps(state, work);
+    shift_particles(scene, state, work);
+    separate_particles(scene, state, work);
+  });
+  if (scene.sheet) timed(clocks, Stage::sides, [&] { keep_sides(scene, state, work); });
+  timed(clocks, Stage::exchange, [&] {
+    exchange_through_ports(scene, state, dt);
+    remove_escaped(scene, state);
+    wrap_positions(scene, state);
+  });
 }
 
 // Solids and shells alone, under their loads.
 template <int D>
 void step_dry(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
+  const StageClock clock(work.stage_seconds, Stage::elastic);
   if (scene.solids) {
     report.elastic_substeps = predict_solids(scene, state, work, dt);
     state.ledger.elastic_substeps += report.elastic_substeps;
@@ -157,7 +178,7 @@ void find_neighborhood(const Scene<D>& scene, const State<D>& state, Workspace<D
   link_weights(scene, state, work);
   particle_number_density(scene, state, work);
   find_free_surface(scene, state, work);
-  if (scene.sheet) cut_links(scene, state, work);
+  if (scene.sheet) timed(work.stage_seconds, Stage::sides, [&] { cut_links(scene, state, work); });
   if (scene.pressure && !scene.pressure->free_surface && state.step > 0) work.surface.assign(n, 0);
 }
 

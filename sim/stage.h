@@ -1,0 +1,54 @@
+// The stages of a time step, in the order of the step, and their clocks.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <vector>
+
+namespace sim {
+
+enum class Stage {
+  neighbors,
+  ports_and_walls,
+  velocity_gradients,
+  viscosity,
+  elastic,
+  pressure_assembly,
+  leaflet_coupling,
+  multigrid_setup,
+  pressure_solve,
+  pressure_gradient,
+  motion,
+  sides,
+  exchange,
+  count
+};
+constexpr std::array<const char*, static_cast<std::size_t>(Stage::count)> stage_names = {
+    "neighbours, density", "ports and walls",   "velocity gradients", "viscosity",      "elastic sub-steps",
+    "pressure assembly",   "leaflet coupling",  "multigrid set-up",   "pressure solve", "pressure gradient",
+    "motion and shifting", "sides of leaflets", "exchange at ports"};
+
+// Adds the wall time between its making and its end to the stage's seconds.
+class StageClock {
+ public:
+  StageClock(std::vector<double>& seconds, Stage stage) : seconds_(seconds), stage_(static_cast<std::size_t>(stage)) {
+    seconds_.resize(stage_names.size(), 0);
+  }
+  ~StageClock() { seconds_[stage_] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  StageClock(const StageClock&) = delete;
+  StageClock& operator=(const StageClock&) = delete;
+
+ private:
+  std::vector<double>& seconds_;
+  std::size_t stage_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// Runs `work` on the clock of `stage`.
+template <class Work>
+decltype(auto) timed(std::vector<double>& seconds, Stage stage, Work&& work) {
+  const StageClock clock(seconds, stage);
+  return work();
+}
+
+}  // namespace sim
