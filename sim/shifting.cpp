@@ -82,7 +82,7 @@ void separate_particles(const Scene<D>& scene, State<D>& state, Workspace<D>& wo
   for (Index i = scene.first_fluid; i < n; ++i) {
     if (state.kind[i] != Kind::fluid) continue;
     Vector<D> push = Vector<D>::Zero(), slow = Vector<D>::Zero();
-    bool beyond = false;
+    double nearest = 1e300, nearest_height = 0;  // of the wall: its own surface decides whether the particle lies behind it
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
       const std::int32_t j = work.neighbors.index[k];
       const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
@@ -98,15 +98,15 @@ void separate_particles(const Scene<D>& scene, State<D>& state, Workspace<D>& wo
         const Vector<D>& normal = work.boundary_normal[j];
         const double height = -r.dot(normal) - scene.description.particles.depth[j];  // above the true surface, locally flat
         const double aside = (r + r.dot(normal) * -normal).norm();
+        if (distance < nearest) nearest = distance, nearest_height = height;
         if (height > 0.25 * l0 || aside > 0.75 * l0) continue;
-        if (height < 0) beyond = true, deepest = std::max(deepest, -height);
         const Vector<D> lift = std::min(0.1 * l0, 0.25 * l0 - height) * normal;
         if (lift.squaredNorm() > push.squaredNorm()) push = lift;
         const double closing = (work.boundary_velocity[j] - work.velocity_old[i]).dot(normal);
         if (closing > 0) slow = closing * normal;
       }
     }
-    if (beyond) ++behind;
+    if (nearest_height < 0) ++behind, deepest = std::max(deepest, -nearest_height);
     work.displacement[i] = push;
     state.velocity[i] += slow;
   }

@@ -85,14 +85,6 @@ bool in_element(const Element<D>& e, const Vector<D>& x) {
   }
 }
 
-template <int D>
-bool segment_crosses(const Element<D>& e, const Vector<D>& from, const Vector<D>& to, double height_from) {
-  const double height_to = (to - e.origin).dot(e.normal);
-  if ((height_from > 0) == (height_to > 0)) return false;
-  const double s = height_from / (height_from - height_to);
-  return in_element<D>(e, from + s * (to - from));
-}
-
 // Nearest point of an element: barycentric weights of its rows.
 template <int D>
 Eigen::Matrix<double, D, 1> nearest_weights(const State<D>& state, const std::array<std::int32_t, D>& rows, const Vector<D>& x) {
@@ -127,26 +119,66 @@ Eigen::Matrix<double, D, 1> nearest_weights(const State<D>& state, const std::ar
   return w;
 }
 
-// Elements that hold a shell row near row i, each once, ascending.
+// Each thread's list of the elements near a row, with what the tests against them need.
 template <int D>
-void elements_near(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, Index i, std::vector<std::int32_t>& out) {
-  out.clear();
-  const SheetGeometry<D>& sheet = *scene.sheet;
-  for (std::int32_t j : work.neighbors.of(i)) {
-    if (state.kind[j] != Kind::shell) continue;
-    const std::int32_t s = j - static_cast<std::int32_t>(scene.elastic_count);
-    for (std::int32_t k = sheet.incident_start[s]; k < sheet.incident_start[s + 1]; ++k) out.push_back(sheet.incident[k]);
+struct NearElements {
+  std::vector<std::int32_t> seen;  // per element: the last row that listed it
+  std::vector<std::int32_t> element;
+  std::vector<Element<D>> shape;
+  std::vector<Vector<D>> center;
+  std::vector<double> offset, height, reach;  // normal . origin, normal . x_i - offset; largest distance of a corner from the centre, m
+
+  // Elements that hold a shell row near row i, each once, in the order of i's neighbours.
+  void list(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, Index i) {
+    const SheetGeometry<D>& sheet = *scene.sheet;
+    seen.resize(sheet.elements.size(), -1);
+    element.clear();
+    for (std::int32_t j : work.neighbors.of(i)) {
+      if (state.kind[j] != Kind::shell) continue;
+      const std::int32_t s = j - static_cast<std::int32_t>(scene.elastic_count);
+      for (std::int32_t k = sheet.incident_start[s]; k < sheet.incident_start[s + 1]; ++k) {
+        const std::int32_t e = sheet.incident[k];
+        if (seen[e] == static_cast<std::int32_t>(i)) continue;
+        seen[e] = static_cast<std::int32_t>(i);
+        element.push_back(e);
+      }
+    }
   }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-}
+
+  void measure(const Scene<D>& scene, const State<D>& state, Index i) {
+    const std::size_t n = element.size();
+    shape.resize(n), center.resize(n), offset.resize(n), height.resize(n), reach.resize(n);
+    for (std::size_t c = 0; c < n; ++c) {
+      const auto& rows = scene.sheet->elements[element[c]];
+      shape[c] = element_at<D>(state, rows);
+      center[c].setZero();
+      for (std::int32_t row : rows) center[c] += state.position[row] / D;
+      reach[c] = 0;
+      for (std::int32_t row : rows) reach[c] = std::max(reach[c], (state.position[row] - center[c]).norm());
+      offset[c] = shape[c].normal.dot(shape[c].origin);
+      height[c] = shape[c].normal.dot(state.position[i]) - offset[c];
+    }
+  }
+
+  // Whether the segment from x_i to `to`, which may end on the sheet at row `on` (-1: does not), crosses an element.
+  bool crosses(const Scene<D>& scene, const Vector<D>& from, const Vector<D>& to, std::int32_t on) const {
+    for (std::size_t c = 0; c < element.size(); ++c) {
+      const double end = shape[c].normal.dot(to) - offset[c];
+      if ((height[c] > 0) == (end > 0)) continue;
+      const Vector<D> point = from + height[c] / (height[c] - end) * (to - from);
+      if ((point - center[c]).squaredNorm() > 1.0001 * reach[c] * reach[c] || !in_element<D>(shape[c], point)) continue;
+      const auto& rows = scene.sheet->elements[element[c]];
+      if (on < 0 || std::find(rows.begin(), rows.end(), on) == rows.end()) return true;
+    }
+    return false;
+  }
+};
 
 }  // namespace
 
 template <int D>
 void cut_links(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
   const Index n = static_cast<Index>(state.size());
-  const SheetGeometry<D>& sheet = *scene.sheet;
   work.near_sheet.clear();
   for (Index i = scene.first_fluid; i < n; ++i)
     for (std::int32_t j : work.neighbors.of(i))
@@ -157,32 +189,16 @@ void cut_links(const Scene<D>& scene, const State<D>& state, Workspace<D>& work)
   const Index near = static_cast<Index>(work.near_sheet.size());
 #pragma omp parallel
   {
-    std::vector<std::int32_t> candidates;
-    std::vector<Element<D>> elements;
-    std::vector<double> heights;
+    NearElements<D> sheet_near;
 #pragma omp for schedule(dynamic, 64)
     for (Index a = 0; a < near; ++a) {
       const Index i = work.near_sheet[a];
-      elements_near(scene, state, work, i, candidates);
-      elements.clear();
-      heights.clear();
-      for (std::int32_t e : candidates) {
-        elements.push_back(element_at<D>(state, sheet.elements[e]));
-        heights.push_back((state.position[i] - elements.back().origin).dot(elements.back().normal));
-      }
+      sheet_near.list(scene, state, work, i);
+      sheet_near.measure(scene, state, i);
       for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
         if (work.link_weight[k] == 0) continue;
         const std::int32_t j = work.neighbors.index[k];
-        const bool shell = state.kind[j] == Kind::shell;
-        for (std::size_t c = 0; c < elements.size(); ++c) {
-          if (shell) {
-            const auto& rows = sheet.elements[candidates[c]];
-            if (std::find(rows.begin(), rows.end(), j) != rows.end()) continue;
-          }
-          if (!segment_crosses<D>(elements[c], state.position[i], state.position[j], heights[c])) continue;
-          work.link_weight[k] = 0;
-          break;
-        }
+        if (sheet_near.crosses(scene, state.position[i], state.position[j], state.kind[j] == Kind::shell ? j : -1)) work.link_weight[k] = 0;
       }
     }
   }
@@ -253,13 +269,17 @@ void remember_sides(const Scene<D>& scene, const State<D>& state, Workspace<D>& 
   work.side_memory.assign(near, {});
 #pragma omp parallel
   {
-    std::vector<std::int32_t> candidates;
+    NearElements<D> sheet_near;
 #pragma omp for schedule(dynamic, 64)
     for (Index a = 0; a < near; ++a) {
       const Index i = work.near_sheet[a];
-      elements_near(scene, state, work, i, candidates);
+      sheet_near.list(scene, state, work, i);
+      sheet_near.measure(scene, state, i);
       double best = 1e300;
-      for (std::int32_t e : candidates) {
+      for (std::size_t c = 0; c < sheet_near.element.size(); ++c) {
+        const std::int32_t e = sheet_near.element[c];
+        const double least = (state.position[i] - sheet_near.center[c]).norm() - sheet_near.reach[c];
+        if (least > 0 && least * least >= best) continue;
         const auto& rows = scene.sheet->elements[e];
         const auto w = nearest_weights<D>(state, rows, state.position[i]);
         Vector<D> point = Vector<D>::Zero(), normal = Vector<D>::Zero();

@@ -91,22 +91,27 @@ TEST(ValveTemplate, LeafletsKeepToTheirSectorsSoTheyDoNotMeet) {
   }
 }
 
-// The pressure that closes it has brought the free edges to the sector planes: a slit with one shallow wave of the surplus, not a hole.
+// The pressure that closes it has brought the free edges to the sector planes: a slit, where each half edge's surplus (the over-closure)
+// stands off in one wave, not a hole. A wave of height a on a half edge of 13 mm takes up about 2.5 a²/13 mm: 1 mm of surplus makes 2.3 mm.
 TEST(ValveTemplate, FreeEdgesLieAlongTheSlit) {
   const Fitted& f = fitted();
   const LeafletSurface& leaflet = f.valve.leaflets[0];
-  int near = 0;
+  const double from = f.patient.frame.commissure_angles[0], to = f.patient.frame.commissure_angles[1], gap = 1e-3;
+  std::vector<double> distance;
   for (int c = 0; c < leaflet.columns; ++c) {
     const Vector3d p = f.patient.frame.to_local(leaflet.reference[leaflet.index(leaflet.rows - 1, c)]);
-    const double from = f.patient.frame.commissure_angles[0], to = f.patient.frame.commissure_angles[1];
-    const double distance = std::min(-std::sin(from) * p.x() + std::cos(from) * p.y(), std::sin(to) * p.x() - std::cos(to) * p.y());
-    near += distance < 1.6e-3;
-    EXPECT_LT(distance, 1e-3 + 2.5e-3);
+    distance.push_back(std::min(-std::sin(from) * p.x() + std::cos(from) * p.y(), std::sin(to) * p.x() - std::cos(to) * p.y()));
   }
-  EXPECT_GT(near, leaflet.columns / 2);
+  int waves = 0;
+  for (int c = 1; c + 1 < leaflet.columns; ++c) {
+    EXPECT_LT(distance[c], gap + 3e-3) << c;
+    waves += distance[c] > gap + 1.2e-3 && distance[c] > distance[c - 1] && distance[c] >= distance[c + 1];
+  }
+  EXPECT_EQ(waves, 2);
+  for (int c : {0, 1, 2, leaflet.columns / 2, leaflet.columns - 3, leaflet.columns - 1}) EXPECT_LT(distance[c], gap + 1.2e-3) << c;
 }
 
-// No crease: neighbouring facets never turn by more than a right angle.
+// No crease: neighbouring facets never turn by more than 66 degrees.
 TEST(ValveTemplate, ReferenceIsSmooth) {
   const LeafletSurface& leaflet = fitted().valve.leaflets[0];
   const auto normal = [&](int r, int c) {
@@ -116,8 +121,8 @@ TEST(ValveTemplate, ReferenceIsSmooth) {
   };
   for (int r = 1; r + 2 < leaflet.rows; ++r)
     for (int c = 1; c + 3 < leaflet.columns; ++c) {
-      EXPECT_GT(normal(r, c).dot(normal(r, c + 1)), 0) << r << " " << c;
-      EXPECT_GT(normal(r, c).dot(normal(r + 1, c)), 0) << r << " " << c;
+      EXPECT_GT(normal(r, c).dot(normal(r, c + 1)), 0.4) << r << " " << c;
+      EXPECT_GT(normal(r, c).dot(normal(r + 1, c)), 0.4) << r << " " << c;
     }
 }
 
