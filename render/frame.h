@@ -32,6 +32,8 @@ struct Surface {
   std::vector<std::vector<float>> fields;  // each as long as vertices
   float thickness = 0;                     // m; > 0: drawn as a skin on both sides with a rim
   int smoothing = 0;                       // levels of Loop subdivision before drawing, 0 ... 3
+  int averaging = 0;                       // passes of area-weighted recovery of the fields before drawing (fairing.h), >= 0
+  int fairing = 0;                         // rounds of fairing of the positions before drawing (fairing.h), >= 0
 };
 
 // A line through points: an attachment, an annulus, a section; in a 2-D scene a beam.
@@ -59,6 +61,7 @@ struct ColorScale {
   double factor = 1;                // shown value per SI value, e.g. 1e-3
   double minimum = 0, maximum = 1;  // SI; maximum > minimum
   Colormap map = Colormap::viridis;
+  std::optional<double> highest{};  // SI: the largest value now, before any smoothing; marked on the bar and written beneath it
 };
 
 // Colour by a field on a scale, or (field = -1) plain.
@@ -80,7 +83,7 @@ struct ParticleLayer {
 struct SurfaceLayer {
   int surface = 0;  // index into Frame::surfaces
   Style style;
-  bool rim = false;      // a dark line along the surface's free border
+  bool rim = false;      // a dark line along the surface's border
   bool section = false;  // a dark line where the clip plane cuts it
 };
 struct LineLayer {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 #include <stdexcept>
 
 #include "render/panel_painter.h"
@@ -31,6 +32,19 @@ std::string shortened(const std::string& text, float room, int size, Lettering& 
     cut.pop_back();
   }
   return cut + "\u2026";
+}
+
+// The words in lines that are no wider than `room` pixels, where words allow it.
+std::vector<std::string> wrapped(const std::string& text, float room, Font& font, int size) {
+  std::vector<std::string> lines;
+  std::stringstream words(text);
+  for (std::string word; words >> word;) {
+    if (!lines.empty() && font.width(lines.back() + " " + word, size) <= room)
+      lines.back() += " " + word;
+    else
+      lines.push_back(word);
+  }
+  return lines;
 }
 
 // The largest of 1, 2, 5 times a power of ten not above `most`.
@@ -223,12 +237,20 @@ Layout lay_out(const Frame& frame, int width, int height) {
   for (int i = 0; i < count; ++i) {
     const int column = i % columns, row = i / columns;
     const int x = width * column / columns, y = top + space * row / rows;
-    layout.panels.push_back({x, y, width * (column + 1) / columns - x, top + space * (row + 1) / rows - y});
+    const int wide = width * (column + 1) / columns - x, bottom = top + space * (row + 1) / rows;
+    int lines = 0;  // of words above the panels of this row
+    for (int k = row * columns; k < std::min(count, (row + 1) * columns); ++k) {
+      const Panel& panel = frame.panels[static_cast<std::size_t>(k)];
+      lines = std::max(lines, !panel.note.empty() ? 2 : !panel.title.empty() ? 1 : 0);
+    }
+    const int words = lines == 0 ? 0 : (6 + 14 * lines) * em / 10;
+    layout.titles.push_back({x, y, wide, words});
+    layout.panels.push_back({x, y + words, wide, bottom - y - words});
   }
   return layout;
 }
 
-int legend_space(const Panel& panel, int text_size) { return panel.legends.empty() ? 0 : 62 * text_size / 10; }
+int legend_space(const Panel& panel, int text_size) { return panel.legends.empty() ? 0 : 68 * text_size / 10; }
 
 Ticks round_ticks(double minimum, double maximum, int wanted) {
   Ticks ticks;
@@ -254,24 +276,43 @@ std::string number_text(double value, int decimals) {
 }
 
 Rect color_bar_place(const Rect& panel, int n, int count, int text_size) {
-  const int top = panel.y + 36 * text_size / 10, bottom = panel.y + panel.height - 65 * text_size / 10;
-  const int share = std::max(1, (bottom - top) / std::max(count, 1)), gap = count > 1 ? 32 * text_size / 10 : 0;
+  // Above each bar three lines with its name, beneath it two with the highest value; the orientation marker at the bottom.
+  const int top = panel.y + 36 * text_size / 10, bottom = panel.y + panel.height - 50 * text_size / 10, gap = 55 * text_size / 10;
+  const int share = std::max(1, (bottom + gap - 32 * text_size / 10 - top) / std::max(count, 1));
   const int width = std::max(8, 11 * text_size / 10);
-  return {panel.x + panel.width - 52 * text_size / 10, top + n * share, width, std::max(10, share - gap)};
+  return {panel.x + panel.width - 55 * text_size / 10, top + n * share, width, std::max(10, share - gap)};
 }
 
+namespace {
+
+// A pointer at the highest value from the bar's left side (at its end where the value lies beyond it), and the value in words beneath.
+void draw_highest(Image& image, const Rect& bar, const ColorScale& scale, int decimals, Lettering& lettering) {
+  const float em = as_float(lettering.size), right = as_float(bar.x) + 4.9f * em;
+  const int small = lettering.size * 75 / 100;
+  const double part = std::clamp((*scale.highest - scale.minimum) / (scale.maximum - scale.minimum), 0.0, 1.0);
+  const float y = as_float(bar.y) + static_cast<float>(1 - part) * as_float(bar.height), tip = as_float(bar.x) - 3;
+  for (const float side : {-0.3f, 0.3f}) stroke(image, tip, y, tip - 0.5f * em, y + side * em, std::max(1.5f, 0.12f * em), ink);
+  const std::string value = number_text(*scale.highest * scale.factor, decimals) + " " + scale.unit;
+  const float below = as_float(bar.y + bar.height);
+  lettering.regular.draw(image, right, below + 1.2f * em, small, "highest now", faint, Align::right);
+  lettering.regular.draw(image, right, below + 2.1f * em, small, value, ink, Align::right);
+}
+
+}  // namespace
+
 void draw_color_bar(Image& image, const Rect& bar, const ColorScale& scale, Lettering& lettering) {
-  const float em = as_float(lettering.size), right = as_float(bar.x) + 4.4f * em;
+  const float em = as_float(lettering.size), right = as_float(bar.x) + 4.9f * em;
   const int small = lettering.size * 8 / 10;
-  const std::string label = scale.label + (scale.unit.empty() ? "" : " [" + scale.unit + "]");
-  const float wide = lettering.bold.width(label, small);
-  fill(image, right - wide - 0.3f * em, as_float(bar.y) - 1.75f * em, wide + 0.6f * em, 1.2f * em, paper, 0.6f);
-  lettering.bold.draw(image, right, as_float(bar.y) - 0.85f * em, small, label, ink, Align::right);
+  const std::vector<std::string> lines =
+      wrapped(scale.label + (scale.unit.empty() ? "" : " [" + scale.unit + "]"), 6 * em, lettering.bold, small);
+  for (std::size_t k = 0; k < lines.size(); ++k)
+    lettering.bold.draw(image, right, as_float(bar.y) - (0.7f + 0.95f * as_float(static_cast<int>(lines.size() - 1 - k))) * em, small,
+                        lines[k], ink, Align::right);
   fill(image, as_float(bar.x) - 2, as_float(bar.y) - 2, as_float(bar.width) + 4, as_float(bar.height) + 4, ink);
   for (int row = 0; row < bar.height; ++row)
     fill(image, as_float(bar.x), as_float(bar.y + row), as_float(bar.width), 1, map_color(scale.map, 1 - (row + 0.5) / bar.height));
   const double low = scale.minimum * scale.factor, high = scale.maximum * scale.factor;
-  const Ticks ticks = round_ticks(low, high, std::max(2, std::min(6, bar.height / (2 * lettering.size))));
+  const Ticks ticks = round_ticks(low, high, std::max(2, std::min(8, bar.height / (2 * lettering.size))));
   const float text_x = as_float(bar.x + bar.width) + 0.75f * em;
   for (const double value : ticks.values) {
     const float y = as_float(bar.y) + static_cast<float>((high - value) / (high - low)) * as_float(bar.height);
@@ -280,23 +321,32 @@ void draw_color_bar(Image& image, const Rect& bar, const ColorScale& scale, Lett
     fill(image, text_x - 0.15f * em, y - 0.45f * em, lettering.regular.width(text, small) + 0.3f * em, 0.9f * em, paper, 0.5f);
     lettering.regular.draw(image, text_x, y + 0.3f * em, small, text, ink);
   }
+  if (scale.highest) draw_highest(image, bar, scale, ticks.decimals, lettering);
 }
 
 void draw_panel_overlay(Image& image, const Rect& place, const Frame& frame, const Panel& panel, Lettering& lettering) {
   const Projection projection = panel_projection(frame, panel, place.width, place.height, legend_space(panel, lettering.size));
   const float em = as_float(lettering.size);
   draw_marks(image, place, frame, panel, projection, lettering);
-  if (!panel.title.empty()) {
-    const float wide = lettering.bold.width(panel.title, lettering.size);
-    fill(image, as_float(place.x) + 0.7f * em, as_float(place.y) + 0.35f * em, wide + 0.6f * em, 1.5f * em, paper, 0.6f);
-    lettering.bold.draw(image, as_float(place.x) + em, as_float(place.y) + 1.5f * em, lettering.size, panel.title, ink);
-  }
-  if (!panel.note.empty()) draw_name(image, as_float(place.x) + em, as_float(place.y) + 2.9f * em, panel.note, faint, lettering);
   const int count = static_cast<int>(panel.legends.size());
   for (int n = 0; n < count; ++n)
     draw_color_bar(image, color_bar_place(place, n, count, lettering.size), frame.scales[panel.legends[n]], lettering);
   if (panel.scale_bar) draw_scale_bar(image, place, projection, lettering);
   draw_orientation(image, place, panel, projection, lettering);
+}
+
+void draw_panel_title(Image& image, const Rect& place, const Panel& panel, Lettering& lettering) {
+  if (place.height <= 0) return;
+  const float em = as_float(lettering.size), x = as_float(place.x) + em, room = as_float(place.width) - 1.5f * em;
+  fill(image, as_float(place.x), as_float(place.y), as_float(place.width), as_float(place.height), Color(0.96f, 0.965f, 0.97f));
+  lettering.bold.draw(image, x, as_float(place.y) + 1.4f * em, lettering.size,
+                      shortened(panel.title,
+                                room * lettering.regular.width(panel.title, lettering.size) /
+                                    std::max(1.0f, lettering.bold.width(panel.title, lettering.size)),
+                                lettering.size, lettering),
+                      ink);
+  const int small = lettering.size * 85 / 100;
+  lettering.regular.draw(image, x, as_float(place.y) + 2.8f * em, small, shortened(panel.note, room, small, lettering), faint);
 }
 
 void draw_header(Image& image, const Rect& place, const Frame& frame, Lettering& lettering) {

@@ -28,7 +28,7 @@ struct Lettering {
 // Where the parts of a picture lie. Throws std::invalid_argument where the picture is too small to hold them.
 struct Layout {
   Rect header, footer, plots;
-  std::vector<Rect> panels;
+  std::vector<Rect> titles, panels;  // each panel's words stand above its picture, so that nothing hides behind them
   int text_size = 20;
 };
 Layout lay_out(const Frame& frame, int width, int height);
@@ -46,6 +46,7 @@ Rect color_bar_place(const Rect& panel, int n, int count, int text_size);
 void draw_color_bar(Image& image, const Rect& bar, const ColorScale& scale, Lettering& lettering);
 
 void draw_panel_overlay(Image& image, const Rect& place, const Frame& frame, const Panel& panel, Lettering& lettering);
+void draw_panel_title(Image& image, const Rect& place, const Panel& panel, Lettering& lettering);
 void draw_header(Image& image, const Rect& place, const Frame& frame, Lettering& lettering);
 void draw_footer(Image& image, const Rect& place, const Frame& frame, Lettering& lettering);
 void draw_plots(Image& image, const Rect& place, const Frame& frame, Lettering& lettering);

@@ -60,6 +60,20 @@ const ColorScale* scale_of(const Frame& frame, const Style& style) { return styl
 
 std::optional<ClipPlane> clip_of(const Panel& panel, const Style& style) { return style.clipped ? panel.clip : std::nullopt; }
 
+// The curves in which the clip plane cuts the first translucent surface (a vessel), where they are closed: no open border crosses the
+// plane.
+Outline cut_outline(const Frame& frame, const Panel& panel) {
+  for (const SurfaceLayer& layer : panel.surfaces) {
+    if (layer.style.opacity >= 1 || !layer.section) continue;
+    const Surface& surface = frame.surfaces[layer.surface];
+    const auto above = [&](std::int32_t i) { return panel.clip->normal.dot(surface.vertices[i] - panel.clip->point) > 0; };
+    for (const auto& [a, b] : border_edges(surface.triangles))
+      if (above(a) != above(b)) return {};
+    return section(surface.vertices, surface.triangles, *panel.clip);
+  }
+  return {};
+}
+
 constexpr float occlusion_reach = 0.03f;  // of the visible height: how far a thing darkens its surroundings
 
 }  // namespace
@@ -100,12 +114,13 @@ void PanelPainter::Parts::draw_opaque(const Frame& frame, const Panel& panel, co
     if (layer.style.opacity >= 1)
       surfaces.draw(drawn_mesh(frame.surfaces[layer.surface], layer.style.field), scale_of(frame, layer.style), layer.style.color,
                     projection, clip_of(panel, layer.style));
+  const Outline outline = panel.clip ? cut_outline(frame, panel) : Outline();
   for (const ParticleLayer& layer : panel.particles) {
     const auto clip = clip_of(panel, layer.style);
     particles.draw(visible_spheres(frame.particles[layer.set], layer.style, scale_of(frame, layer.style), clip, layer.shape), layer.shape,
                    projection, clip);
     if (layer.section && clip)
-      sections.draw(frame.particles[layer.set], layer.style, scale_of(frame, layer.style), *clip, projection, targets.opaque);
+      sections.draw(frame.particles[layer.set], layer.style, scale_of(frame, layer.style), *clip, outline, projection, targets.opaque);
   }
   std::vector<Sphere> balls;
   for (const int index : panel.marks) {
@@ -159,13 +174,12 @@ void PanelPainter::Parts::draw_lines(const Frame& frame, const Panel& panel, con
     const Surface& surface = frame.surfaces[layer.surface];
     const Color dark = 0.35f * layer.style.color;
     if (layer.rim) {
-      const DrawnMesh mesh = drawn_mesh({surface.name, surface.vertices, surface.triangles, {}, 0, surface.smoothing}, -1);
-      std::vector<std::array<Eigen::Vector3f, 2>> pairs;  // along both edges of a skin's rim
-      for (const float side : {0.5f, -0.5f})
-        for (const auto& [a, b] : border_edges(mesh.triangles))
-          pairs.push_back({mesh.positions[a] + side * surface.thickness * mesh.normals[a],
-                           mesh.positions[b] + side * surface.thickness * mesh.normals[b]});
-      lines.draw(segments(pairs, dark), width(2.5f), lift, false, projection);
+      const DrawnMesh mesh = mid_mesh(surface, -1);
+      const std::vector<Eigen::Vector3f> outward = border_outward(mesh);
+      const auto rim = [&](std::int32_t i) { return Eigen::Vector3f(mesh.positions[i] + 0.5f * surface.thickness * outward[i]); };
+      std::vector<std::array<Eigen::Vector3f, 2>> pairs;
+      for (const auto& [a, b] : border_edges(mesh.triangles)) pairs.push_back({rim(a), rim(b)});
+      lines.draw(segments(pairs, dark), width(2), lift, false, projection);
     }
     if (layer.section && panel.clip) {
       const auto cut = section(surface.vertices, surface.triangles, *panel.clip);

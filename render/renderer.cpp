@@ -34,10 +34,11 @@ Image Renderer::draw(const Frame& frame, const PictureSettings& settings) {
     if (drawn == 0)
       throw std::runtime_error("the picture" + (panel.title.empty() ? "" : " '" + panel.title + "'") +
                                " shows nothing but background: what it should show is empty or lies outside the view");
+    draw_panel_title(image, layout.titles[i], panel, parts_->lettering);
     draw_panel_overlay(image, place, frame, panel, parts_->lettering);
     if (place.x > 0)
-      fill(image, static_cast<float>(place.x) - 1, static_cast<float>(place.y), 2, static_cast<float>(place.height),
-           Color(0.6f, 0.63f, 0.67f));
+      fill(image, static_cast<float>(place.x) - 1, static_cast<float>(layout.titles[i].y), 2,
+           static_cast<float>(layout.titles[i].height + place.height), Color(0.6f, 0.63f, 0.67f));
   }
   draw_header(image, layout.header, frame, parts_->lettering);
   draw_plots(image, layout.plots, frame, parts_->lettering);

@@ -2,8 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
+
+#include "render/fairing.h"
 
 namespace render {
 namespace {
@@ -121,7 +124,20 @@ std::vector<std::array<std::int32_t, 2>> border_edges(const std::vector<std::arr
   return result;
 }
 
+std::vector<Eigen::Vector3f> border_outward(const DrawnMesh& mesh) {
+  std::vector<Eigen::Vector3f> outward(mesh.positions.size(), Eigen::Vector3f::Zero());
+  for (const auto& [a, b] : border_edges(mesh.triangles)) {
+    const Eigen::Vector3f along = mesh.positions[b] - mesh.positions[a];
+    outward[a] += along.cross(mesh.normals[a]);
+    outward[b] += along.cross(mesh.normals[b]);
+  }
+  for (Eigen::Vector3f& direction : outward)
+    if (direction.norm() > 0) direction.normalize();
+  return outward;
+}
+
 DrawnMesh skin(const DrawnMesh& mesh, float thickness) {
+  constexpr int arcs = 4;  // of the half circle round the rim
   const auto count = static_cast<std::int32_t>(mesh.positions.size());
   DrawnMesh result;
   for (const float side : {0.5f, -0.5f})
@@ -134,29 +150,44 @@ DrawnMesh skin(const DrawnMesh& mesh, float thickness) {
     result.triangles.push_back({a, b, c});
     result.triangles.push_back({a + count, c + count, b + count});
   }
-  for (const auto& [a, b] : border_edges(mesh.triangles)) {  // the rim has corners of its own: its normal points out of the border
-    const Eigen::Vector3f along = mesh.positions[b] - mesh.positions[a];
-    Eigen::Vector3f outward = along.cross(mesh.normals[a] + mesh.normals[b]);
-    if (outward.norm() > 0) outward.normalize();
-    const auto first = static_cast<std::int32_t>(result.positions.size());
-    for (const std::int32_t vertex : {a, b, b + count, a + count}) {
-      result.positions.push_back(Eigen::Vector3f(result.positions[vertex]));
-      result.normals.push_back(outward);
-      result.values.push_back(mesh.values[vertex % count]);
+  const std::vector<Eigen::Vector3f> outward = border_outward(mesh);
+  std::vector<std::int32_t> first(mesh.positions.size(), -1);  // of a border vertex's points between both sides
+  const auto level = [&](std::int32_t vertex, int arc) {
+    return arc == 0 ? vertex : arc == arcs ? vertex + count : first[vertex] + arc - 1;
+  };
+  for (const auto& [a, b] : border_edges(mesh.triangles)) {
+    for (const std::int32_t vertex : {a, b}) {
+      if (first[vertex] >= 0) continue;
+      first[vertex] = static_cast<std::int32_t>(result.positions.size());
+      for (int arc = 1; arc < arcs; ++arc) {
+        const float angle = static_cast<float>(M_PI) * static_cast<float>(arc) / arcs;
+        const Eigen::Vector3f normal = std::cos(angle) * mesh.normals[vertex] + std::sin(angle) * outward[vertex];
+        result.positions.emplace_back(mesh.positions[vertex] + 0.5f * thickness * normal);
+        result.normals.push_back(normal);
+        result.values.push_back(mesh.values[vertex]);
+      }
     }
-    result.triangles.push_back({first, first + 3, first + 1});
-    result.triangles.push_back({first + 1, first + 3, first + 2});
+    for (int arc = 0; arc < arcs; ++arc) {
+      result.triangles.push_back({level(a, arc), level(a, arc + 1), level(b, arc)});
+      result.triangles.push_back({level(b, arc), level(a, arc + 1), level(b, arc + 1)});
+    }
   }
   return result;
 }
 
-DrawnMesh drawn_mesh(const Surface& surface, int field) {
+DrawnMesh mid_mesh(const Surface& surface, int field) {
   DrawnMesh mesh;
-  mesh.positions = surface.vertices;
+  mesh.positions = faired(surface.vertices, surface.triangles, surface.fairing);
   mesh.triangles = surface.triangles;
-  mesh.values = field >= 0 ? surface.fields.at(field) : std::vector<float>(surface.vertices.size(), 0.0f);
+  mesh.values = field >= 0 ? recovered(surface.fields.at(field), surface.vertices, surface.triangles, surface.averaging)
+                           : std::vector<float>(surface.vertices.size(), 0.0f);
   mesh.normals = vertex_normals(mesh.positions, mesh.triangles);
   for (int level = 0; level < std::min(surface.smoothing, 3); ++level) mesh = subdivide(mesh);
+  return mesh;
+}
+
+DrawnMesh drawn_mesh(const Surface& surface, int field) {
+  DrawnMesh mesh = mid_mesh(surface, field);
   return surface.thickness > 0 ? skin(mesh, surface.thickness) : mesh;
 }
 

@@ -25,10 +25,16 @@ std::vector<Eigen::Vector3f> vertex_normals(const std::vector<Eigen::Vector3f>& 
 // old vertices are kept as they are, those of new ones are the mean of their edge, so that no value leaves the range it had.
 DrawnMesh subdivide(const DrawnMesh& mesh);
 
-// The mesh moved by half the thickness to either side, closed along its free border. thickness > 0, m.
+// Along the border, the unit direction out of the surface and across it; elsewhere zero.
+std::vector<Eigen::Vector3f> border_outward(const DrawnMesh& mesh);
+
+// The mesh moved by half the thickness to either side, closed along its free border by a half circle. thickness > 0, m.
 DrawnMesh skin(const DrawnMesh& mesh, float thickness);
 
-// What is drawn for a surface: smoothed, with normals and its skin. field = -1: values are 0.
+// A surface's middle as it is drawn: recovered values, faired, smoothed, with normals. field = -1: values are 0.
+DrawnMesh mid_mesh(const Surface& surface, int field);
+
+// What is drawn for a surface: its middle with its skin.
 DrawnMesh drawn_mesh(const Surface& surface, int field);
 
 // Edges that belong to one triangle alone, in the direction in which that triangle runs through them.

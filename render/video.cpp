@@ -16,6 +16,8 @@ extern "C" {
 #include <stdexcept>
 #include <vector>
 
+#include "render/palette.h"
+
 namespace render {
 namespace {
 
@@ -43,9 +45,19 @@ void use_bt709(SwsContext* scaler, bool to_rgb) {
   sws_setColorspaceDetails(scaler, matrix, to_rgb ? 0 : 1, matrix, to_rgb ? 1 : 0, 0, 1 << 16, 1 << 16);
 }
 
+enum class Container { mp4, webp, gif };
+
+Container container_of(const std::string& path) {
+  const auto ends = [&](const char* ending) { return path.size() >= std::strlen(ending) && path.ends_with(ending); };
+  return ends(".webp") ? Container::webp : ends(".gif") ? Container::gif : Container::mp4;
+}
+
+const char* const container_names[] = {"mp4", "webp", "gif"};
+
 }  // namespace
 
 struct VideoWriter::Parts {
+  Container container = Container::mp4;
   std::string path;
   AVFormatContext* file = nullptr;
   AVStream* stream = nullptr;
@@ -63,6 +75,8 @@ struct VideoWriter::Parts {
     if (code < 0) fail(what, code);
   }
   void open_codec(const VideoSettings& settings);
+  void set_h264(const VideoSettings& settings);
+  void fill_indexed(const Image& image);
   void open_file();
   void drain(const AVFrame* frame);
   ~Parts() {
@@ -74,14 +88,25 @@ struct VideoWriter::Parts {
 };
 
 void VideoWriter::Parts::open_codec(const VideoSettings& settings) {
-  const AVCodec* encoder = avcodec_find_encoder_by_name("libx264");
-  if (!encoder) fail("this libavcodec has no libx264", 0);
+  const char* const names[] = {"libx264", "libwebp_anim", "gif"};
+  const char* const name = names[static_cast<int>(container)];
+  const AVCodec* encoder = avcodec_find_encoder_by_name(name);
+  if (!encoder) fail(std::string("this libavcodec has no ") + name, 0);
   codec.reset(avcodec_alloc_context3(encoder));
-  codec->width = width + width % 2;
-  codec->height = height + height % 2;
   const AVRational rate = av_d2q(settings.fps, 100000);
   codec->framerate = rate;
-  codec->time_base = av_inv_q(rate);
+  codec->time_base = container == Container::gif ? AVRational{1, 100} : av_inv_q(rate);  // GIF counts hundredths of a second
+  codec->width = width;
+  codec->height = height;
+  codec->pix_fmt = container == Container::gif ? AV_PIX_FMT_PAL8 : AV_PIX_FMT_BGRA;
+  if (container == Container::mp4) set_h264(settings);
+  if (container == Container::webp) av_opt_set(codec->priv_data, "quality", "80", 0);
+  check(avcodec_open2(codec.get(), encoder, nullptr), (std::string("opening ") + name).c_str());
+}
+
+void VideoWriter::Parts::set_h264(const VideoSettings& settings) {
+  codec->width = width + width % 2;
+  codec->height = height + height % 2;
   codec->pix_fmt = AV_PIX_FMT_YUV420P;
   codec->colorspace = AVCOL_SPC_BT709;
   codec->color_primaries = AVCOL_PRI_BT709;
@@ -91,7 +116,6 @@ void VideoWriter::Parts::open_codec(const VideoSettings& settings) {
   av_opt_set(codec->priv_data, "preset", "veryfast", 0);
   av_opt_set(codec->priv_data, "crf", std::to_string(settings.quality).c_str(), 0);
   if (file->oformat->flags & AVFMT_GLOBALHEADER) codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-  check(avcodec_open2(codec.get(), encoder, nullptr), "opening libx264");
 }
 
 void VideoWriter::Parts::open_file() {
@@ -103,7 +127,8 @@ void VideoWriter::Parts::open_file() {
   check(avio_open(&file->pb, path.c_str(), AVIO_FLAG_WRITE), "opening the file");
   opened = true;
   AVDictionary* options = nullptr;
-  av_dict_set(&options, "movflags", "+faststart", 0);
+  if (container == Container::mp4) av_dict_set(&options, "movflags", "+faststart", 0);
+  if (container != Container::mp4) av_dict_set(&options, "loop", "0", 0);  // for ever
   const int code = avformat_write_header(file, &options);
   av_dict_free(&options);
   check(code, "writing the header");
@@ -118,7 +143,9 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height, const V
   p.height = height;
   if (!(settings.fps >= 1 && settings.fps <= 240)) p.fail("frames a second must lie between 1 and 240", 0);
   if (width < 2 || height < 2) p.fail("the picture is too small", 0);
-  p.check(avformat_alloc_output_context2(&p.file, nullptr, "mp4", path.c_str()), "choosing the format");
+  p.container = container_of(path);
+  p.check(avformat_alloc_output_context2(&p.file, nullptr, container_names[static_cast<int>(p.container)], path.c_str()),
+          "choosing the format");
   p.open_codec(settings);
   p.open_file();
   p.picture.reset(av_frame_alloc());
@@ -127,10 +154,11 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height, const V
   p.picture->width = p.codec->width;
   p.picture->height = p.codec->height;
   p.check(av_frame_get_buffer(p.picture.get(), 0), "making a frame");
+  if (p.container == Container::gif) return;
   p.scaler.reset(sws_getContext(p.codec->width, p.codec->height, AV_PIX_FMT_RGBA, p.codec->width, p.codec->height, p.codec->pix_fmt,
                                 SWS_BILINEAR | SWS_ACCURATE_RND, nullptr, nullptr, nullptr));
-  if (!p.scaler) p.fail("no conversion to 4:2:0", 0);
-  use_bt709(p.scaler.get(), false);
+  if (!p.scaler) p.fail("no conversion of colours", 0);
+  if (p.container == Container::mp4) use_bt709(p.scaler.get(), false);
 }
 
 VideoWriter::~VideoWriter() = default;
@@ -142,7 +170,7 @@ void VideoWriter::Parts::drain(const AVFrame* frame) {
     const int code = avcodec_receive_packet(codec.get(), packet.get());
     if (code == AVERROR(EAGAIN) || code == AVERROR_EOF) return;
     check(code, "encoding");
-    packet->duration = 1;
+    if (container == Container::mp4) packet->duration = 1;
     av_packet_rescale_ts(packet.get(), codec->time_base, stream->time_base);
     packet->stream_index = stream->index;
     check(av_interleaved_write_frame(file, packet.get()), "writing a frame");
@@ -163,11 +191,29 @@ void VideoWriter::add(const Image& image) {
     source = &padded;
   }
   p.check(av_frame_make_writable(p.picture.get()), "making a frame");
-  const std::uint8_t* rows[1] = {source->rgba.data()};
-  const int stride[1] = {4 * source->width};
-  sws_scale(p.scaler.get(), rows, stride, 0, source->height, p.picture->data, p.picture->linesize);
-  p.picture->pts = p.frames++;
+  if (p.container == Container::gif) {
+    p.fill_indexed(*source);
+  } else {
+    const std::uint8_t* rows[1] = {source->rgba.data()};
+    const int stride[1] = {4 * source->width};
+    sws_scale(p.scaler.get(), rows, stride, 0, source->height, p.picture->data, p.picture->linesize);
+  }
+  p.picture->pts = av_rescale_q(p.frames++, av_inv_q(p.codec->framerate), p.codec->time_base);
   p.drain(p.picture.get());
+}
+
+// Each frame has colours of its own: those of a scale may appear late in a movie.
+void VideoWriter::Parts::fill_indexed(const Image& image) {
+  const Palette palette = make_palette(image);
+  const std::vector<std::uint8_t> pixels = indexed(image, palette);
+  for (int y = 0; y < image.height; ++y)
+    std::memcpy(picture->data[0] + static_cast<std::ptrdiff_t>(y) * picture->linesize[0],
+                &pixels[static_cast<std::size_t>(y) * image.width], static_cast<std::size_t>(image.width));
+  auto* entries = reinterpret_cast<std::uint32_t*>(picture->data[1]);  // as libavutil lays a palette out: 0xAARRGGBB
+  for (std::size_t c = 0; c < 256; ++c) {
+    const std::array<std::uint8_t, 3> color = c < palette.size() ? palette[c] : std::array<std::uint8_t, 3>{};
+    entries[c] = 0xff000000u | static_cast<std::uint32_t>(color[0]) << 16 | static_cast<std::uint32_t>(color[1]) << 8 | color[2];
+  }
 }
 
 void VideoWriter::finish() {

@@ -1,4 +1,4 @@
-// H.264 movies (libx264) in MP4, playable while they load.
+// Movies: H.264 (libx264) in MP4, playable while they load; and previews that a page or a mail shows as a picture: animated WebP and GIF.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,9 @@ struct VideoSettings {
   int quality = 18;  // x264's constant rate factor: 0 lossless ... 51; 18 shows no loss
 };
 
-// Every frame has the size of the first. An odd width or height is padded by one row or column, as 4:2:0 colour needs. Throws
-// std::runtime_error naming the file. A movie that is not finished (an exception on the way) is removed.
+// The name's ending chooses the format: .webp, .gif, else MP4. Previews are repeated for ever. Every frame has the size of the first. An
+// odd width or height is padded by one row or column, as 4:2:0 colour needs. Throws std::runtime_error naming the file. A movie that is not
+// finished (an exception on the way) is removed.
 class VideoWriter {
  public:
   VideoWriter(const std::string& path, int width, int height, const VideoSettings& settings);

@@ -1,10 +1,10 @@
 #version 330 core
 // The cut face from the sums: the mean value by colour, unlit, where enough particles are near; at the plane's own depth.
-uniform sampler2D sums, color_table;
+uniform sampler2D sums, color_table, inside;
 uniform mat4 projection;
 uniform vec2 size, unproject, middle;  // pixels; view-space half size; place of the optical axis, -1 ... 1
 uniform vec4 clip_plane;
-uniform bool perspective, by_table;
+uniform bool perspective, by_table, masked;
 uniform vec3 plain_color;
 uniform float enough;
 layout(location = 0) out vec4 albedo;
@@ -13,6 +13,7 @@ layout(location = 1) out vec4 view_normal;
 void main() {
   vec2 sum = texture(sums, gl_FragCoord.xy / size).rg;
   if (sum.x < enough) discard;
+  if (masked && texelFetch(inside, ivec2(gl_FragCoord.xy), 0).r < 0.5) discard;
   vec2 ndc = 2.0 * gl_FragCoord.xy / size - 1.0 - middle;
   vec3 origin = perspective ? vec3(0) : vec3(ndc * unproject, 0);
   vec3 sight = perspective ? normalize(vec3(ndc * unproject, -1)) : vec3(0, 0, -1);

@@ -43,6 +43,10 @@ TEST(Overlay, panels_tile_the_picture_between_header_and_footer) {
     const Layout layout = lay_out(frame, 1920, 1080);
     ASSERT_EQ(layout.panels.size(), 2u);
     long area = static_cast<long>(layout.header.height + layout.footer.height + layout.plots.height) * 1920;
+    for (const Rect& title : layout.titles) {
+      EXPECT_GT(title.height, 0);  // the panels have titles: they stand above the pictures, not on them
+      area += static_cast<long>(title.width) * title.height;
+    }
     for (const Rect& panel : layout.panels) area += static_cast<long>(panel.width) * panel.height;
     EXPECT_EQ(area, 1920L * 1080);
   }
@@ -68,6 +72,25 @@ TEST(Overlay, colour_bar_shows_the_map_from_end_to_end) {
   EXPECT_GT(dark_pixels(image, {bar.x + bar.width + 12, bar.y + bar.height / 2 - 8, 30, 16}), 10);
   EXPECT_EQ(dark_pixels(image, {bar.x + bar.width + 12, bar.y + bar.height / 2 + bar.height / 20 - 3, 30, 6}), 0);
   EXPECT_GT(dark_pixels(image, {bar.x - 60, bar.y - 36, 140, 24}), 60);  // the label with its unit
+}
+
+// The pointer stands at the highest value's colour, and at the bar's end where the value lies beyond it.
+TEST(Overlay, colour_bar_points_at_the_highest_value) {
+  Lettering lettering;
+  ColorScale scale{"Stress", "kPa", 1e-3, 0, 2e4, Colormap::inferno};
+  const Rect bar = color_bar_place({0, 0, 400, 600}, 0, 1, lettering.size);
+  const auto pointed = [&](double highest) {
+    scale.highest = highest;
+    Image image(400, 600);
+    draw_color_bar(image, bar, scale, lettering);
+    EXPECT_GT(dark_pixels(image, {bar.x - 40, bar.y + bar.height + 26, 140, 20}), 20);  // the value in words
+    int best = 0, most = 0;
+    for (int y = bar.y - 8; y < bar.y + bar.height + 8; ++y)
+      if (const int dark = dark_pixels(image, {bar.x - 8, y, 4, 1}); dark > most) most = dark, best = y;
+    return best;
+  };
+  EXPECT_NEAR(pointed(1e4), bar.y + bar.height / 2, 3);
+  EXPECT_NEAR(pointed(5e4), bar.y, 3);
 }
 
 TEST(Overlay, plot_cursor_moves_with_time) {

@@ -301,5 +301,40 @@ TEST(Renderer, a_picture_beyond_the_driver_is_refused_in_words) {
   EXPECT_THROW(renderer().draw(example::valve_frame(0.5f, 3e-3f), {10, 10, {}}), std::invalid_argument);
 }
 
+// Blood that reaches beyond the vessel, cut along it: the cut face ends at the vessel's wall.
+TEST(Renderer, a_section_ends_at_the_vessels_wall) {
+  Frame frame = plain_frame();
+  ParticleSet blood{"blood", {}, {{}}, 0.0003f};
+  for (float z = -0.0015f; z < 0.0016f; z += 0.0005f)
+    for (float y = -0.004f; y < 0.00401f; y += 0.0005f)
+      for (float x = -0.004f; x < 0.00401f; x += 0.0005f) {
+        blood.positions.emplace_back(x, y, z);
+        blood.fields[0].push_back(0.5f);
+      }
+  frame.particles = {blood};
+  Surface tube{"vessel", {}, {}, {}};  // a closed box of half width 2 mm across and 3 mm along
+  for (const float z : {-0.002f, 0.002f})
+    for (const auto& [x, y] : {std::pair{-1.f, -1.f}, {1.f, -1.f}, {1.f, 1.f}, {-1.f, 1.f}})
+      tube.vertices.emplace_back(0.002f * x, 0.003f * y, z);
+  for (const auto& [a, b, c, d] : {std::array{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}) {
+    tube.triangles.push_back({a, b, c});
+    tube.triangles.push_back({a, c, d});
+  }
+  frame.surfaces = {tube};
+  Panel& panel = frame.panels[0];
+  panel.clip = ClipPlane{{0, 0, 0.0001f}, Eigen::Vector3f::UnitZ()};
+  panel.particles = {{0, {0, 0}, ParticleShape::sphere, true}};
+  const Eigen::Vector3f inside(0.0012f, 0.0012f, 0.0001f), outside(0.0030f, 0.0012f, 0.0001f);
+  const Color wanted = 255 * map_color(Colormap::viridis, 0.5);
+  for (const bool bounded : {false, true}) {
+    if (bounded) panel.surfaces = {{0, {-1, -1, Color(0.8f, 0.5f, 0.5f), 0.2f}, false, true}};
+    const Image image = renderer().draw(frame, small);
+    const Seen seen = view_of(frame, small);
+    const auto is_blood = [&](const Eigen::Vector3f& p) { return (pixel_at(image, seen, p).cast<float>() - wanted).norm() < 12; };
+    EXPECT_TRUE(is_blood(inside));
+    EXPECT_EQ(is_blood(outside), !bounded);
+  }
+}
+
 }  // namespace
 }  // namespace render

@@ -67,12 +67,18 @@ TEST(Skin, normals_point_by_the_right_hand_rule) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR((solid.normals[i] - solid.positions[i]).norm(), 0, 1e-6);
 }
 
-TEST(Skin, of_a_flat_square_has_the_volume_of_a_plate_and_is_closed) {
+// The plate and, round it, half a tube: pi t^2/8 of cross-section (a polygon of four sides has 0.9 of it), mitred at the corners.
+TEST(Skin, of_a_flat_square_has_the_volume_of_a_plate_with_a_round_rim_and_is_closed) {
   const DrawnMesh plate = skin(grid(4), 0.5f);
-  EXPECT_NEAR(volume(plate), 4 * 4 * 0.5, 1e-4);
+  const double rim = 16 * 3.14159265 * 0.25 / 8;
+  EXPECT_GT(volume(plate), 4 * 4 * 0.5 + 0.75 * rim);
+  EXPECT_LT(volume(plate), 4 * 4 * 0.5 + 1.05 * rim);
   EXPECT_TRUE(closed(plate));
   EXPECT_FALSE(closed(grid(4)));
-  for (std::size_t i = 0; i < plate.positions.size(); ++i) EXPECT_EQ(plate.values[i], plate.positions[i].x());
+  float farthest = 0;
+  for (const Eigen::Vector3f& p : plate.positions) farthest = std::max(farthest, p.x());
+  EXPECT_NEAR(farthest, 4 + 0.25, 1e-5);  // half the thickness beyond the border
+  for (std::size_t i = 0; i < 2 * 25; ++i) EXPECT_EQ(plate.values[i], plate.positions[i].x());
 }
 
 TEST(Skin, subdivision_keeps_a_plane_and_its_values_within_their_range) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 namespace render {
@@ -47,6 +49,37 @@ TEST_F(Video, keeps_colours_and_their_order) {
     const Image frame = read_video_frame(path_, i);
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(frame.at(32, 32)[k], colors[i][k], 8) << "frame " << i;
   }
+}
+
+TEST_F(Video, previews_as_gif_keep_frames_and_colours) {
+  path_ = testing::TempDir() + "cusp_video.gif";
+  VideoWriter writer(path_, 64, 48, {10, 18});
+  const int colors[3][3] = {{200, 30, 30}, {30, 180, 60}, {40, 60, 210}};
+  for (const auto& [red, green, blue] : colors) writer.add(plain(64, 48, red, green, blue));
+  writer.finish();
+  const VideoInfo info = probe_video(path_);
+  EXPECT_EQ(info.codec, "gif");
+  EXPECT_EQ(info.frames, 3);
+  EXPECT_EQ(info.width, 64);
+  for (int i = 0; i < 3; ++i) {
+    const Image frame = read_video_frame(path_, i);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(frame.at(32, 24)[k], colors[i][k], 2) << "frame " << i;
+  }
+}
+
+// RIFF container: one ANMF chunk a frame, of a file that says it is a WebP (libavformat writes but does not read animated ones).
+TEST_F(Video, previews_as_webp_hold_all_frames) {
+  path_ = testing::TempDir() + "cusp_video.webp";
+  VideoWriter writer(path_, 64, 48, {10, 18});
+  for (int i = 0; i < 4; ++i) writer.add(plain(64, 48, 60 * i, 100, 200));
+  writer.finish();
+  std::ifstream file(path_, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  EXPECT_EQ(bytes.substr(0, 4), "RIFF");
+  EXPECT_EQ(bytes.substr(8, 4), "WEBP");
+  int frames = 0;
+  for (auto at = bytes.find("ANMF"); at != std::string::npos; at = bytes.find("ANMF", at + 4)) ++frames;
+  EXPECT_EQ(frames, 4);
 }
 
 TEST_F(Video, pads_odd_sizes) {
