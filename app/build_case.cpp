@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "app/case_parts.h"
+#include "app/loaded_surface.h"
 #include "app/to_geometry.h"
 
 namespace app {
@@ -230,6 +231,22 @@ struct Builder {
     return rows;
   }
 
+  // A pressure on part of a solid: rows, areas and offsets of that part alone (sim/solid_loads.cpp).
+  void set_loaded_surface(const LoadSpec& spec, int index, sim::Load<D>& load) {
+    const BodyParticles& part = parts.bodies[index];
+    const geometry::Shape region = region_shape(*spec.region, D, scene.spacing);
+    const geometry::Shape body = to_geometry(scene.bodies[part.source].shape, D, scene.spacing);
+    const LoadedSurface surface = loaded_surface(body, part, region, D, scene.spacing);
+    if (surface.row.empty())
+      refuse(spec.region->spot, "holds no part of the surface of body \"" + part.name + "\"", "let it enclose the surface");
+    load.rows = surface.row;
+    load.share.clear();
+    for (std::size_t k = 0; k < surface.row.size(); ++k) {
+      for (int axis = 0; axis < D; ++axis) load.share.push_back(surface.area[k][axis]);
+      for (int axis = 0; axis < D; ++axis) load.share.push_back(surface.offset[k][axis]);
+    }
+  }
+
   sim::Load<D> make_load(const LoadSpec& spec, int index, const std::vector<std::int64_t>& rows, double whole) {
     const BodyParticles& part = parts.bodies[index];
     sim::Load<D> load;
@@ -238,6 +255,7 @@ struct Builder {
     for (std::int64_t row : rows) mine += part.volume[row];
     load.rows = rows;
     for (std::int64_t row : rows) load.share.push_back(part.volume[row] / mine);
+    if (spec.pressure && spec.region && part.kind == sim::Kind::elastic) set_loaded_surface(spec, index, load);
     if (spec.force && spec.region) move_shares_to_region(*spec.region, part, D, scene.spacing, load.rows, load.share);
     for (std::int64_t& row : load.rows) row += description().bodies[index].first;
     if (spec.force) load.force = reduced<D>(*spec.force) * (mine / whole);

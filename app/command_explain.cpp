@@ -1,9 +1,10 @@
-// cusp explain SCENE [--measure]
+// cusp explain SCENE [--measure]; cusp explain --measure
 #include <cstdio>
 #include <memory>
 
 #include "app/commands.h"
 #include "app/explain.h"
+#include "app/measure_effects.h"
 #include "app/progress.h"
 
 namespace app {
@@ -39,17 +40,49 @@ void print_plain(const nlohmann::json& about) {
   for (const auto& warning : about["warnings"]) std::printf("warning: %s\n", text(warning).c_str());
 }
 
+// One line an effect, as a Markdown table.
+void print_effects(const nlohmann::json& all) {
+  std::printf(
+      "| effect | stages it adds | bytes without | bytes with | microseconds a step without | with | at zero strength: positions (l0) | "
+      "speeds |\n"
+      "|---|---|---|---|---|---|---|---|\n");
+  for (const auto& row : all["effects"]) {
+    std::string stages;
+    for (const auto& stage : row["stages_gained"]) stages += (stages.empty() ? "" : "; ") + stage.get<std::string>();
+    const auto zero = [&](const char* key) {
+      char text[32] = "-";
+      if (row.contains(key)) std::snprintf(text, sizeof text, "%.1e", row[key].get<double>());
+      return std::string(text);
+    };
+    std::printf("| %s | %s | %lld | %lld | %.0f | %.0f | %s | %s |\n", row["effect"].get<std::string>().c_str(),
+                stages.empty() ? "none: within a stage" : stages.c_str(), row["bytes_without"].get<long long>(),
+                row["bytes_with"].get<long long>(), 1e6 * row["seconds_a_step_without"].get<double>(),
+                1e6 * row["seconds_a_step_with"].get<double>(), zero("zero_strength_position").c_str(),
+                zero("zero_strength_velocity").c_str());
+  }
+}
+
 }  // namespace
 
 void add_explain_command(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("explain", "say what would be simulated, what not, and what it costs");
   command->footer("Example: cusp explain scene.toml --measure");
-  command->add_option("SCENE", options->scene, "scene file (.toml)")->required();
+  command->add_option("SCENE", options->scene, "scene file (.toml); with --measure alone: what each effect costs");
   command->add_option("--set", options->settings, "KEY=VALUE; may be repeated")->allow_extra_args(false);
   command->add_flag("--measure", options->measure, "run a few steps and say what they cost");
   command->add_flag("--json", options->json, "print one JSON object");
   command->callback([options, &exit_code] {
+    if (options->scene.empty()) {
+      if (!options->measure) throw CLI::RequiredError("SCENE");
+      const nlohmann::json effects = measure_effects();
+      if (options->json)
+        std::printf("%s\n", effects.dump(2).c_str());
+      else
+        print_effects(effects);
+      exit_code = 0;
+      return;
+    }
     const nlohmann::json about = explain_scene(read_scene_file(options->scene, options->settings), options->measure ? 5 : 0);
     if (options->json)
       std::printf("%s\n", about.dump(2).c_str());

@@ -1,78 +1,26 @@
-// cusp validate [CASE…] [--full] [--list] [--json]: the built-in cases of assets/scenes/validation/cases.toml.
+// cusp validate [CASE…] [--full] [--list] [--docs DIR] [--json]: the built-in cases (validation.h).
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <memory>
 
-#include "app/assets.h"
 #include "app/commands.h"
-#include "app/compare.h"
 #include "app/progress.h"
-#include "app/run_case.h"
+#include "app/random_scenes.h"
 #include "app/scene_table.h"
+#include "app/validation.h"
 
 namespace app {
 namespace {
 
 struct Options {
   std::vector<std::string> cases;
-  std::string output;
-  int threads = 0;
+  std::string output, docs;
+  int threads = 0, random = 0;
+  std::uint64_t seed = 1;
   bool full = false, list = false, quiet = false, json = false;
 };
-
-struct ValidationCase {
-  std::string name, title;
-  std::filesystem::path scene;
-  int priority = 3;
-  std::vector<std::string> fast, full;  // settings
-};
-
-std::vector<ValidationCase> read_cases() {
-  const std::filesystem::path file = asset("scenes/validation/cases.toml");
-  const toml::table table = toml::parse_file(file.string());
-  const TableReader top(table, "", {"case"});
-  std::vector<ValidationCase> cases;
-  for (const toml::table* entry : top.tables("case")) {
-    const TableReader reader(*entry, "case", {"name", "title", "scene", "priority", "fast", "full"});
-    ValidationCase one;
-    one.name = reader.text("name"), one.title = reader.text("title", one.name), one.scene = file.parent_path() / reader.text("scene");
-    one.priority = static_cast<int>(reader.integer("priority", any_number, 3));
-    if (reader.has("fast")) one.fast = reader.texts("fast");
-    if (reader.has("full")) one.full = reader.texts("full");
-    cases.push_back(std::move(one));
-  }
-  return cases;
-}
-
-// status: pass, degraded (passed, but steps were refused on the way), refused (bad input), fail.
-nlohmann::json run_one(const ValidationCase& one, const Options& options, const std::filesystem::path& folder) {
-  const auto start = std::chrono::steady_clock::now();
-  nlohmann::json json{{"name", one.name}, {"title", one.title}, {"priority", one.priority}};
-  try {
-    const SceneFile scene = read_scene_file(one.scene, options.full ? one.full : one.fast);
-    RunCaseOptions run;
-    run.output = folder / (one.name + ".h5"), run.quiet = true, run.threads = options.threads;
-    const sim::RunResult result = run_case(scene, run);
-    bool passed = result.ending == sim::RunEnding::finished;
-    if (!passed) json["message"] = result.message;
-    const sim::RunReader reader(run.output);
-    for (const Comparison& c : compare_with_references(scene, reader)) {
-      json["checks"].push_back(comparison_json(c));
-      passed = passed && c.passed();
-    }
-    const std::vector<double> refused = reader.column("refused_steps");
-    json["status"] = !passed ? "fail" : !refused.empty() && refused.back() > 0 ? "degraded" : "pass";
-    json["steps"] = result.steps;
-  } catch (const SceneError& error) {
-    json["status"] = "refused", json["message"] = error.what();
-  } catch (const std::exception& error) {
-    json["status"] = "fail", json["message"] = error.what();
-  }
-  json["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return json;
-}
 
 void print_one(const nlohmann::json& one) {
   std::printf("%-9s %-28s %s\n", one["status"].get<std::string>().c_str(), one["name"].get<std::string>().c_str(),
@@ -86,29 +34,38 @@ void print_one(const nlohmann::json& one) {
   std::fflush(stdout);
 }
 
-void write_table(const nlohmann::json& all, const std::filesystem::path& folder) {
-  std::ofstream(folder / "validation.json") << all.dump(2) << "\n";
-  std::ofstream md(folder / "validation.md"), csv(folder / "validation.csv");
-  md << "| case | status | quantity | measured | reference | source | error | limit | time |\n|---|---|---|---|---|---|---|---|---|\n";
-  csv << "case,status,quantity,measured,reference,uncertainty,error,limit,seconds,source\n";
-  for (const auto& one : all["cases"])
-    for (const auto& c : one.value("checks", nlohmann::json::array({nlohmann::json::object()}))) {
-      char line[512];
-      std::snprintf(line, sizeof line, "| %s | %s | %s | %.6g | %.6g | %s | %.3g %% | %s | %.3g s |\n",
-                    one["title"].get<std::string>().c_str(), one["status"].get<std::string>().c_str(), c.value("quantity", "").c_str(),
-                    c.value("measured", 0.0), c.value("reference", 0.0), c.value("source", "").c_str(), 100 * c.value("error", 0.0),
-                    c.contains("limit") ? (std::to_string(100 * c["limit"].get<double>()).substr(0, 5) + " %").c_str() : "",
-                    one["seconds"].get<double>());
-      md << line;
-      csv << one["name"].get<std::string>() << "," << one["status"].get<std::string>() << "," << c.value("quantity", "") << ","
-          << c.value("measured", 0.0) << "," << c.value("reference", 0.0) << "," << c.value("uncertainty", 0.0) << ","
-          << c.value("error", 0.0) << "," << c.value("limit", 0.0) << "," << one["seconds"].get<double>() << ",\"" << c.value("source", "")
-          << "\"\n";
-    }
+void copy_to_docs(const std::vector<ValidationCase>& cases, const std::filesystem::path& folder, const std::filesystem::path& docs) {
+  const auto replace = std::filesystem::copy_options::overwrite_existing;
+  std::filesystem::create_directories(docs / "validation");
+  std::filesystem::copy_file(folder / "validation.md", docs / "validation.md", replace);
+  for (const ValidationCase& one : cases)
+    std::filesystem::copy_file(folder / "validation" / (one.name + ".svg"), docs / "validation" / (one.name + ".svg"), replace);
+}
+
+// Random scenes, seed by seed: each runs or is refused in one line.
+int validate_random(const Options& options) {
+  nlohmann::json all{{"scenes", nlohmann::json::array()}};
+  std::map<std::string, int> counts;
+  for (int k = 0; k < options.random; ++k) {
+    all["scenes"].push_back(run_random_scene(options.seed + static_cast<std::uint64_t>(k)));
+    const nlohmann::json& one = all["scenes"].back();
+    const std::string outcome = one["outcome"];
+    ++counts[outcome];
+    if (!options.json && outcome != "ran")
+      std::printf("seed %-6llu %-8s %s\n", static_cast<unsigned long long>(options.seed + static_cast<std::uint64_t>(k)), outcome.c_str(),
+                  one.value("message", "").c_str());
+    std::fflush(stdout);
+  }
+  all["counts"] = counts;
+  if (options.json)
+    std::printf("%s\n", all.dump(2).c_str());
+  else
+    for (const auto& [outcome, count] : counts) std::printf("%5d %s\n", count, outcome.c_str());
+  return counts["broken"] + counts["slow"] > 0 ? 1 : 0;
 }
 
 int validate(const Options& options) {
-  std::vector<ValidationCase> cases = read_cases();
+  std::vector<ValidationCase> cases = read_validation_cases();
   std::vector<std::string> names;
   for (const ValidationCase& one : cases) names.push_back(one.name);
   for (const std::string& name : options.cases)
@@ -133,15 +90,18 @@ int validate(const Options& options) {
     return 0;
   }
   const std::filesystem::path folder = options.output.empty() ? "validation" : options.output;
-  std::filesystem::create_directories(folder);
+  std::filesystem::create_directories(folder / "validation");
   bool failed = false;
   for (const ValidationCase& one : cases) {
-    all["cases"].push_back(run_one(one, options, folder));
+    const ValidationResult result = run_validation_case(one, options.full, options.threads, folder);
+    std::ofstream(folder / "validation" / (one.name + ".svg")) << svg_plot(one.title, result.panels);
+    all["cases"].push_back(result.json);
     const std::string status = all["cases"].back()["status"];
     failed = failed || status == "fail" || status == "refused";
     if (!options.json) print_one(all["cases"].back());
   }
-  write_table(all, folder);
+  write_validation_tables(all, folder);
+  if (!options.docs.empty()) copy_to_docs(cases, folder, options.docs);
   if (options.json) std::printf("%s\n", all.dump(2).c_str());
   return failed ? 1 : 0;
 }
@@ -156,10 +116,13 @@ void add_validate_command(CLI::App& program, int& exit_code) {
   command->add_flag("--full", options->full, "full settings instead of fast ones");
   command->add_flag("--list", options->list, "only list the cases");
   command->add_option("-o,--output", options->output, "folder for runs and tables (default: validation)");
+  command->add_option("--random", options->random, "run this many random scenes instead: 50 steps each, or refused in one line");
+  command->add_option("--seed", options->seed, "of the first random scene");
+  command->add_option("--docs", options->docs, "also copy the table and the plots into this folder");
   command->add_option("--threads", options->threads, "processor threads")->check(CLI::Range(1, 4096));
   command->add_flag("--quiet", options->quiet, "no progress");
   command->add_flag("--json", options->json, "print the result as JSON");
-  command->callback([options, &exit_code] { exit_code = validate(*options); });
+  command->callback([options, &exit_code] { exit_code = options->random > 0 ? validate_random(*options) : validate(*options); });
 }
 
 }  // namespace app

@@ -263,6 +263,8 @@ void place_fluid_and_walls(const std::vector<PlacedBody>& bodies, const Placemen
   std::vector<double> volume(bodies.size(), 0);
   for (int m : members) {
     volume[m] = true_volume(bodies[m], cells.lattice, options);
+    // A wall's volume matters to nobody; a cell that it gave up would be a hole beside the fluid.
+    if (bodies[m].matter == Matter::wall && options.obstacle_position.empty()) continue;
     if (!is_rectilinear(bodies[m].shape, options.dimension)) balance_volume(cells, bodies, members, m, volume[m], options);
   }
   Draft draft = draft_particles(cells, cells_to_relax(cells, bodies, options));

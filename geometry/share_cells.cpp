@@ -158,9 +158,20 @@ void balance_volume(SharedCells& cells, const std::vector<PlacedBody>& bodies, c
     if (distance <= most) candidates.push_back({distance, lattice.volume(cell), c});
   }
   std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
-  for (const Candidate& candidate : candidates) {
-    const bool take = sure + 0.5 * candidate.volume < volume;
-    if (take) sure += candidate.volume;
+  // Cells equally far from the surface (all along a straight pipe, say) are taken evenly spaced: dropping the last ones would leave a hole.
+  std::vector<std::uint8_t> taken(candidates.size(), 0);
+  for (std::size_t first = 0, last = 0; first < candidates.size(); first = last) {
+    while (last < candidates.size() && candidates[last].distance - candidates[first].distance < 1e-6 * options.spacing) ++last;
+    const std::size_t count = last - first;
+    const auto wanted = std::llround((volume - sure) / candidates[first].volume);
+    const std::size_t takes = std::size_t(std::clamp<long long>(wanted, 0, (long long)(count)));
+    for (std::size_t k = 0; k < count; ++k) taken[first + k] = (k + 1) * takes / count > k * takes / count;
+    for (std::size_t k = first; k < last; ++k)
+      if (taken[k]) sure += candidates[k].volume;
+  }
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const Candidate& candidate = candidates[k];
+    const bool take = taken[k] != 0;
     if (take == (cells.owner[candidate.cell] == body)) continue;
     cells.owner[candidate.cell] = take ? body : no_body;
     cells.distance[candidate.cell] = float(candidate.distance);

@@ -1,5 +1,7 @@
 #include "sim/number_density.h"
 
+#include <algorithm>
+
 namespace sim {
 using Index = std::ptrdiff_t;
 
@@ -77,9 +79,69 @@ void find_free_surface(const Scene<D>& scene, const State<D>& state, Workspace<D
   }
 }
 
-#define INSTANTIATE(D)                                                                    \
-  template void link_weights(const Scene<D>&, const State<D>&, Workspace<D>&);            \
-  template void particle_number_density(const Scene<D>&, const State<D>&, Workspace<D>&); \
+namespace {
+
+// Whether the way from x_i to x_j leads through a particle of a thin wall near particle `owner`: through its plane, within 0.75 l0 of it.
+template <int D>
+bool through_thin_wall(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, std::int32_t owner, std::int32_t other) {
+  const double beside = 0.75 * scene.lattice.spacing;
+  const Vector<D> way = scene.space.difference(state.position[owner], state.position[other]);
+  for (std::int32_t b : work.neighbors.of(static_cast<std::size_t>(owner))) {
+    if (b >= scene.first_fluid || !(scene.back_depth[b] > 0)) continue;
+    const Vector<D> r = scene.space.difference(state.position[owner], state.position[b]);
+    const Vector<D>& normal = work.boundary_normal[b];
+    const double here = -r.dot(normal), there = (way - r).dot(normal);
+    if (here * there >= 0) continue;
+    const Vector<D> crossing = way * (here / (here - there));
+    if ((crossing - r).norm() < beside) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+template <int D>
+void cut_links_through_walls(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  if (std::none_of(scene.back_depth.begin(), scene.back_depth.end(), [](double depth) { return depth > 0; })) return;
+  const Index n = static_cast<Index>(state.size());
+  std::vector<std::uint8_t> beside_thin(n, 0);
+#pragma omp parallel for schedule(dynamic, 512)
+  for (Index i = scene.first_fluid; i < n; ++i)
+    for (std::int32_t b : work.neighbors.of(static_cast<std::size_t>(i)))
+      if (b < scene.first_fluid && scene.back_depth[b] > 0) beside_thin[i] = 1;
+#pragma omp parallel for schedule(dynamic, 512)
+  for (Index i = scene.first_fluid; i < n; ++i)
+    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+      const std::int32_t j = work.neighbors.index[k], me = static_cast<std::int32_t>(i),
+                         owner = std::min(me, j);  // the same for i-j and j-i
+      if (j < scene.first_fluid || !beside_thin[owner]) continue;
+      if (through_thin_wall(scene, state, work, owner, std::max(me, j))) work.link_weight[k] = 0;
+    }
+}
+
+template <int D>
+std::int64_t count_open_surface(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work) {
+  const double l0 = scene.description.spacing;
+  std::int64_t count = 0;
+  for (Index i = scene.first_fluid; i < static_cast<Index>(state.size()); ++i) {
+    if (work.surface[i] != 1) continue;
+    const double size = work.surface_outward[i].norm();
+    bool open = true;
+    if (size > 0) {
+      const Vector<D> ahead = 1.4 * l0 / size * work.surface_outward[i];
+      for (std::int32_t j : work.neighbors.of(i))
+        open = open && (scene.space.difference(state.position[i], state.position[j]) - ahead).norm() > 0.7 * l0;
+    }
+    count += open;
+  }
+  return count;
+}
+
+#define INSTANTIATE(D)                                                                             \
+  template void cut_links_through_walls(const Scene<D>&, const State<D>&, Workspace<D>&);          \
+  template std::int64_t count_open_surface(const Scene<D>&, const State<D>&, const Workspace<D>&); \
+  template void link_weights(const Scene<D>&, const State<D>&, Workspace<D>&);                     \
+  template void particle_number_density(const Scene<D>&, const State<D>&, Workspace<D>&);          \
   template void find_free_surface(const Scene<D>&, const State<D>&, Workspace<D>&);
 INSTANTIATE(2)
 INSTANTIATE(3)

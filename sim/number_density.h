@@ -20,4 +20,13 @@ void particle_number_density(const Scene<D>& scene, const State<D>& state, Works
 template <int D>
 void find_free_surface(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
 
+// Cuts the links (weight 0) between fluid particles on opposite sides of a wall thinner than the kernel radius.
+template <int D>
+void cut_links_through_walls(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
+
+// How many of the surface particles found look into open space: nothing within 0.7 l0 of the point 1.4 l0 ahead. Gaps that the placing of
+// particles leaves at curved walls are narrower; they are no free surface.
+template <int D>
+std::int64_t count_open_surface(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work);
+
 }  // namespace sim

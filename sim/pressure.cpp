@@ -25,12 +25,47 @@ void number_unknowns(const Scene<D>& scene, const State<D>& state, Workspace<D>&
 
 namespace {
 
-// D_i(a) without the shells' part (see pressure.h); k already in w.
+// A drop that touches nothing falls freely: seen from its own frame nothing pushes it, and its pressure is 0 however its particles lie.
+// Per row the mean acceleration of such a drop; 0 for fluid that touches a boundary, a port or a leaflet. Empty where no surface is free.
 template <int D>
-double acceleration_link(const Scene<D>& scene, const Workspace<D>& work, Index i, std::int32_t j, const Vector<D>& r, bool at_surface) {
+std::vector<Vector<D>> falling_frames(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work) {
+  std::vector<Vector<D>> frame;
+  if (!scene.pressure->free_surface) return frame;
+  const Index n = static_cast<Index>(state.size());
+  frame.assign(n, Vector<D>::Zero());
+  std::vector<std::uint8_t> seen(n, 0);
+  std::vector<std::int32_t> drop;
+  for (Index s = scene.first_fluid; s < n; ++s) {
+    if (seen[s] || work.unknown[s] < 0) continue;
+    drop.assign(1, static_cast<std::int32_t>(s));
+    seen[s] = 1;
+    bool touches = false;
+    Vector<D> sum = Vector<D>::Zero();
+    for (std::size_t k = 0; k < drop.size(); ++k) {
+      const std::int32_t i = drop[k];
+      sum += work.acceleration[i];
+      for (std::int64_t e = work.neighbors.start[i]; e < work.neighbors.start[i + 1]; ++e) {
+        const std::int32_t j = work.neighbors.index[e];
+        if (work.link_weight[e] == 0) continue;
+        touches = touches || j < scene.first_fluid || state.kind[j] != Kind::fluid;
+        if (j < scene.first_fluid || seen[j] || work.unknown[j] < 0) continue;
+        seen[j] = 1;
+        drop.push_back(j);
+      }
+    }
+    if (touches) continue;
+    for (std::int32_t i : drop) frame[i] = sum / static_cast<double>(drop.size());
+  }
+  return frame;
+}
+
+// D_i(a) without the shells' part (see pressure.h), seen from a frame with the acceleration `frame`; k already in w.
+template <int D>
+double acceleration_link(const Scene<D>& scene, const Workspace<D>& work, Index i, std::int32_t j, const Vector<D>& r, bool at_surface,
+                         const Vector<D>& frame) {
   const Vector<D>& a_i = work.acceleration[i];
   const Vector<D>& a_j = work.acceleration[j];
-  if (j >= scene.first_fluid) return 0.5 * r.dot(at_surface ? Vector<D>(a_j - a_i) : Vector<D>(a_j + a_i));
+  if (j >= scene.first_fluid) return 0.5 * r.dot(at_surface ? Vector<D>(a_j - a_i) : Vector<D>(a_j + a_i - 2 * frame));
   if (!at_surface) return r.dot(a_j);
   const Vector<D>& normal = work.boundary_normal[j];
   return (a_j - a_i).dot(normal) * r.dot(normal);
@@ -58,6 +93,8 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
   std::partial_sum(a.start.begin(), a.start.end(), a.start.begin());
   a.column.resize(a.start[unknowns]);
   a.value.resize(a.start[unknowns]);
+  const std::vector<Vector<D>> frames = falling_frames(scene, state, work);
+  const Vector<D> at_rest = Vector<D>::Zero();
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index u = 0; u < unknowns; ++u) {
     const Index i = work.unknown_row[u];
@@ -75,7 +112,7 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
       if (j >= scene.first_fluid && state.kind[j] == Kind::port) beside_port = true;
       const bool port = j >= scene.first_fluid && state.kind[j] == Kind::port;
       if (port && !gives_pressure(scene.description.ports[state.port[j]])) continue;  // its speed at the new time is in grad v
-      divergence += k * w * acceleration_link<D>(scene, work, i, j, r, at_surface);
+      divergence += k * w * acceleration_link<D>(scene, work, i, j, r, at_surface, frames.empty() ? at_rest : frames[i]);
       if (j < scene.first_fluid) continue;
       double c = volume * k * w * 2 / (rho + scene.density[state.body[j]]);
       if (port) c /= port_fraction<D>(scene.description.ports[state.port[j]], state.position[i], state.position[j]);

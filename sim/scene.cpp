@@ -123,11 +123,11 @@ Scene<D> make_scene(SceneDescription<D> description) {
   scene.upper = high + margin;
   if (fluid || !d.ports.empty()) {
     scene.pressure = Pressure{};
+    scene.pressure->free_surface = true;  // so that the neighbourhood looks for one
     State<D> state = initial_state(scene);
     Workspace<D> work;
     find_neighborhood(scene, state, work);
-    std::int64_t surface = 0;
-    for (std::uint8_t flag : work.surface) surface += flag == 1;
+    const std::int64_t surface = count_open_surface(scene, state, work);
     const auto fluid_count = static_cast<double>(state.size() - static_cast<std::size_t>(scene.first_fluid));
     scene.pressure->free_surface = surface > std::max(4.0, 0.002 * fluid_count);
     for (const auto& port : d.ports)

@@ -41,6 +41,38 @@ std::vector<ClampPoint<D>> estimated_points(const SceneDescription<D>& scene, st
   return points;
 }
 
+// In a corner between two faces that hold different axes a particle knows the nearer face alone: the other one is its neighbours' face,
+// taken as plane.
+template <int D>
+void add_corner_points(const InitialParticles<D>& particles, std::size_t count, double spacing, std::vector<ClampPoint<D>>& points) {
+  constexpr std::uint8_t all = (1 << D) - 1;
+  std::vector<Vector<D>> beside;
+  std::vector<std::size_t> row;
+  for (std::size_t i = 0; i < count; ++i)
+    if (particles.clamp_axes[i]) beside.push_back(particles.position[i]), row.push_back(i);
+  const NeighborTable near = points_within<D>(beside, beside, 1.5 * spacing);
+  for (std::size_t a = 0; a < row.size(); ++a) {
+    const std::size_t i = row[a];
+    const std::uint8_t missing = all & ~particles.clamp_axes[i] & ~particles.fixed[i];
+    for (int axis = 0; axis < D; ++axis) {
+      if (!(missing >> axis & 1)) continue;
+      double nearest = 1e300;
+      Vector<D> point = Vector<D>::Zero();
+      for (const std::int32_t b : near.of(a)) {
+        const std::size_t j = row[b];
+        if (particles.body[j] != particles.body[i] || !(particles.clamp_axes[j] >> axis & 1)) continue;
+        const double away = (particles.position[j] - particles.position[i]).norm(), depth = particles.clamp_offset[j].norm();
+        if (away >= nearest || depth > 1.001 * spacing || !(depth > 0)) continue;
+        nearest = away;
+        const Vector<D> normal = particles.clamp_offset[j] / depth;
+        point = particles.position[i] + normal.dot(particles.position[j] + particles.clamp_offset[j] - particles.position[i]) * normal;
+      }
+      if (nearest < 1e300 && (point - particles.position[i]).norm() < 1.6 * spacing)
+        points.push_back({point, static_cast<std::uint8_t>(1 << axis), particles.body[i]});
+    }
+  }
+}
+
 template <int D>
 std::vector<ClampPoint<D>> given_points(const SceneDescription<D>& scene, std::size_t count) {
   const auto& particles = scene.particles;
@@ -49,6 +81,7 @@ std::vector<ClampPoint<D>> given_points(const SceneDescription<D>& scene, std::s
     const std::uint8_t axes = particles.clamp_axes[i] & ~particles.fixed[i];
     if (axes) points.push_back({particles.position[i] + particles.clamp_offset[i], axes, particles.body[i]});
   }
+  add_corner_points(particles, count, scene.spacing, points);
   return points;
 }
 

@@ -13,14 +13,6 @@ namespace sim {
 
 namespace {
 
-// A piece of the surface where a clamp holds the component: the virtual displacement is 0 there, the reaction is free.
-template <int D>
-bool held_there(const SolidElasticity<D>& solid, const SolidFit& fit, const Vector<D>& offset) {
-  for (std::int64_t l = fit.first; l < fit.first + fit.count; ++l)
-    if (solid.neighbor[l] < 0 && (solid.offset[l] - offset).norm() < 0.3 * solid.spacing) return true;
-  return false;
-}
-
 // sum over surface pieces minus sum over particles, for the displacement component `axis`, row by row.
 template <int D>
 std::vector<Vector<D>> mismatch(const SolidElasticity<D>& solid, int axis) {

@@ -7,12 +7,32 @@ namespace sim {
 
 namespace {
 
+// Pressure on a piece of the boundary; components that a clamp holds there go into its reaction.
+template <int D>
+void push_on_piece(const SolidElasticity<D>& solid, std::size_t i, const Vector<D>& offset, Vector<D> f, std::span<Vector<D>> force) {
+  for (std::int64_t fit = solid.fit_begin[i]; fit < solid.fit_begin[i + 1]; ++fit)
+    for (int k = 0; k < D; ++k)
+      if ((solid.fits[fit].components >> k & 1) && held_there(solid, solid.fits[fit], offset)) f(k) = 0;
+  add_force_at<D>(solid, i, offset, f, force);
+}
+
 template <int D>
 void add_pressure(const SolidElasticity<D>& solid, std::size_t i, double pressure, const SolidWork<D>& work, std::span<Vector<D>> force) {
   for (const SurfacePiece<D>& piece : surface_pieces<D>(solid, i)) {
     const Tensor<D> f = deformation_gradient<D>(work.derivatives[i], piece.offset);
-    add_force_at<D>(solid, i, piece.offset, -pressure * (cofactor<D>(f) * piece.area), force);
+    push_on_piece<D>(solid, i, piece.offset, -pressure * (cofactor<D>(f) * piece.area), force);
   }
+}
+
+// A pressure load whose `share` holds 2 D numbers a row (area, m² (2-D: m), and offset from the particle, m, both at rest) pushes on these
+// parts of the boundary alone; a row may come several times (at an edge: once a face).
+template <int D>
+void add_pressure_on_part(const SolidElasticity<D>& solid, const Load<D>& load, std::size_t r, double pressure, const SolidWork<D>& work,
+                          std::span<Vector<D>> force) {
+  const auto i = static_cast<std::size_t>(load.rows[r]);
+  const Eigen::Map<const Vector<D>> area(load.share.data() + 2 * D * r), offset(load.share.data() + 2 * D * r + D);
+  const Tensor<D> f = deformation_gradient<D>(work.derivatives[i], offset);
+  push_on_piece<D>(solid, i, offset, -pressure * (cofactor<D>(f) * area), force);
 }
 
 }  // namespace
@@ -38,7 +58,11 @@ void external_loads(const SolidElasticity<D>& solid, std::span<const Load<D>> lo
       if (i >= n) continue;  // a shell's row
       if (load.force) force[i] += factor * load.share[r] * *load.force;
       if (load.acceleration) force[i] += factor * solid.mass[i] * load.acceleration(position[i], time);
-      if (load.pressure) add_pressure(solid, i, factor * *load.pressure, work, force);
+      if (!load.pressure) continue;
+      if (load.share.size() == 2 * D * load.rows.size())
+        add_pressure_on_part(solid, load, r, factor * *load.pressure, work, force);
+      else
+        add_pressure(solid, i, factor * *load.pressure, work, force);
     }
   }
 }

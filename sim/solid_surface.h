@@ -35,4 +35,13 @@ template <int D>
 void add_force_at(const SolidElasticity<D>& solid, std::size_t row, const Vector<D>& offset, const Vector<D>& f,
                   std::span<Vector<D>> force);
 
+// Whether a clamp's point holds the fit's components at `offset` from its particle (within 0.3 l0): the displacement is 0 there, and what
+// pushes is taken up by the reaction.
+template <int D>
+bool held_there(const SolidElasticity<D>& solid, const SolidFit& fit, const Vector<D>& offset) {
+  for (std::int64_t l = fit.first; l < fit.first + fit.count; ++l)
+    if (solid.neighbor[l] < 0 && (solid.offset[l] - offset).norm() < 0.3 * solid.spacing) return true;
+  return false;
+}
+
 }  // namespace sim

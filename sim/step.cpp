@@ -178,8 +178,11 @@ void find_neighborhood(const Scene<D>& scene, const State<D>& state, Workspace<D
   link_weights(scene, state, work);
   particle_number_density(scene, state, work);
   find_free_surface(scene, state, work);
-  if (scene.sheet) timed(work.stage_seconds, Stage::sides, [&] { cut_links(scene, state, work); });
-  if (scene.pressure && !scene.pressure->free_surface && state.step > 0) work.surface.assign(n, 0);
+  if (scene.sheet)
+    timed(work.stage_seconds, Stage::sides, [&] { cut_links(scene, state, work); });
+  else
+    cut_links_through_walls(scene, state, work);
+  if (scene.pressure && !scene.pressure->free_surface && (state.step > 0 || !scene.sheet)) work.surface.assign(n, 0);
 }
 
 template <int D>
