@@ -37,17 +37,39 @@ void check_inside_domain(const SceneFile& scene, const BodySpec& body, const geo
 }
 
 void check_counts(const SceneFile& scene, const std::vector<geometry::PlacedBody>& bodies, const geometry::PlacementOptions& options) {
-  double total = 0;
-  for (std::int64_t count : geometry::estimate_particle_counts(bodies, options)) total += static_cast<double>(count);
+  double total = 0, coarser = 1;
+  for (geometry::PlacementOptions tried = options;; coarser *= 100) {  // far too small a spacing: counted at a larger one
+    tried.spacing = options.spacing * coarser;
+    total = 0;
+    for (std::int64_t count : geometry::estimate_particle_counts(bodies, tried)) total += static_cast<double>(count);
+    if (total < 1e12) break;
+  }
+  total *= std::pow(coarser, scene.dimension);
   const auto fits = [&](double allowed) { return count_text(scene.spacing * std::pow(total / allowed, 1.0 / scene.dimension) * 1.01); };
   if (total > static_cast<double>(scene.limits.particles))
     refuse(scene.spacing_spot,
            "makes about " + count_text(total) + " particles, more than limits.particles = " + std::to_string(scene.limits.particles),
            "a spacing of " + fits(static_cast<double>(scene.limits.particles)) + " would fit");
   const double bytes = static_cast<double>(estimated_memory(static_cast<std::int64_t>(total), scene.dimension));
-  if (scene.limits.memory > 0 && bytes > static_cast<double>(scene.limits.memory))
+  const double program = static_cast<double>(estimated_memory(0, scene.dimension)), allowed = static_cast<double>(scene.limits.memory);
+  if (scene.limits.memory == 0 || bytes <= allowed) return;
+  if (allowed <= program)
     refuse(scene.spacing_spot, "needs about " + count_text(bytes) + " bytes, more than limits.memory",
-           "a spacing of " + fits(total * static_cast<double>(scene.limits.memory) / bytes) + " would fit");
+           "give it more than the " + count_text(program) + " bytes of the program itself");
+  refuse(scene.spacing_spot, "needs about " + count_text(bytes) + " bytes, more than limits.memory",
+         "a spacing of " + fits(total * (allowed - program) / (bytes - program)) + " would fit");
+}
+
+// Before its particles are made: those of a thin box.
+void check_thin_box(const SceneFile& scene, const BodySpec& body, int thin) {
+  double total = 1;
+  for (int axis = 0; axis < scene.dimension; ++axis)
+    if (axis != thin) total *= std::max(1.0, (body.shape.max[axis] - body.shape.min[axis]) / scene.spacing);
+  const double allowed = static_cast<double>(scene.limits.particles);
+  if (total > allowed)
+    refuse(scene.spacing_spot,
+           "makes about " + count_text(total) + " particles, more than limits.particles = " + std::to_string(scene.limits.particles),
+           "a spacing of " + count_text(scene.spacing * std::pow(total / allowed, 1.0 / (scene.dimension - 1)) * 1.01) + " would fit");
 }
 
 void check_shell_overlap(const SceneFile& scene, const BodyParticles& shell, const std::vector<geometry::PlacedBody>& placed) {
@@ -95,6 +117,7 @@ CaseParticles place_bodies(const SceneFile& scene) {
     if (body.shape.type == ShapeType::shell || thin >= 0) {
       if (body.kind != sim::Kind::elastic)
         refuse(body.shape.spot, "only an elastic body can be a shell", "set kind = \"elastic\", or use a solid shape");
+      if (thin >= 0) check_thin_box(scene, body, thin);
       result.bodies[i] = thin >= 0 ? box_shell(body, i, scene.dimension, scene.spacing, thin) : surface_shell(body, i, scene.spacing);
       if (thin >= 0) check_inside_domain(scene, body, to_geometry(body.shape, scene.dimension, scene.spacing));
       if (result.bodies[i].size() == 0) refuse(body.shape.spot, "holds no particle", "make the spacing smaller");

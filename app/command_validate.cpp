@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 
+#include "app/command_stability.h"
 #include "app/commands.h"
 #include "app/progress.h"
 #include "app/random_scenes.h"
@@ -19,7 +20,7 @@ struct Options {
   std::string output, docs;
   int threads = 0, random = 0;
   std::uint64_t seed = 1;
-  bool full = false, list = false, quiet = false, json = false;
+  bool full = false, list = false, quiet = false, json = false, stability = false, fast = false;
 };
 
 void print_one(const nlohmann::json& one) {
@@ -106,6 +107,21 @@ int validate(const Options& options) {
   return failed ? 1 : 0;
 }
 
+int stability(const Options& options) {
+  StabilityOptions chosen;
+  if (!options.output.empty()) chosen.output = options.output;
+  chosen.cells = options.cases, chosen.fast = options.fast, chosen.list = options.list;
+  chosen.quiet = options.quiet || options.json, chosen.jobs = options.threads;
+  const nlohmann::json all = run_stability(chosen);
+  if (options.json)
+    std::printf("%s\n", all.dump(2).c_str());
+  else if (options.list)
+    for (const auto& one : all["cases"])
+      std::printf("%-32s %s = %s\n", one["name"].get<std::string>().c_str(), one["vary"].get<std::string>().c_str(),
+                  one["value"].get<std::string>().c_str());
+  return all["counts"]["fail"].get<int>() > 0 ? 1 : 0;
+}
+
 }  // namespace
 
 void add_validate_command(CLI::App& program, int& exit_code) {
@@ -114,6 +130,8 @@ void add_validate_command(CLI::App& program, int& exit_code) {
   command->footer("Example: cusp validate hydrostatic_2d --json");
   command->add_option("CASE", options->cases, "names of cases (default: all)");
   command->add_flag("--full", options->full, "full settings instead of fast ones");
+  command->add_flag("--stability", options->stability, "the stability matrix instead (CASE: names of its cells)");
+  command->add_flag("--fast", options->fast, "of the stability matrix only the fast subset");
   command->add_flag("--list", options->list, "only list the cases");
   command->add_option("-o,--output", options->output, "folder for runs and tables (default: validation)");
   command->add_option("--random", options->random, "run this many random scenes instead: 50 steps each, or refused in one line");
@@ -122,7 +140,9 @@ void add_validate_command(CLI::App& program, int& exit_code) {
   command->add_option("--threads", options->threads, "processor threads")->check(CLI::Range(1, 4096));
   command->add_flag("--quiet", options->quiet, "no progress");
   command->add_flag("--json", options->json, "print the result as JSON");
-  command->callback([options, &exit_code] { exit_code = options->random > 0 ? validate_random(*options) : validate(*options); });
+  command->callback([options, &exit_code] {
+    exit_code = options->random > 0 ? validate_random(*options) : options->stability ? stability(*options) : validate(*options);
+  });
 }
 
 }  // namespace app

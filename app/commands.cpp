@@ -5,11 +5,13 @@
 #include <string>
 
 #include "app/command_render.h"
+#include "app/limits.h"
 #include "app/scene_error.h"
 
 namespace app {
 
 int run_program(int argc, char** argv) {
+  install_fault_handlers();
   CLI::App program("cusp: stress on an aortic valve, by the Moving Particle Semi-implicit method", "cusp");
   program.set_version_flag("--version", CUSP_VERSION);
   program.require_subcommand(1);
@@ -38,7 +40,7 @@ int run_program(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "cusp: not enough memory; make the spacing larger or set limits.particles\n");
+    std::fprintf(stderr, "cusp: not enough memory; make the spacing larger, or raise limits.memory or the system's limit\n");
     return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

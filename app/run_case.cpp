@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "app/limits.h"
 #include "app/progress.h"
 
 namespace app {
@@ -29,6 +30,7 @@ std::string folder_from(const std::filesystem::path& run, const std::filesystem:
 
 sim::RunResult run_case(const SceneFile& scene_file, const RunCaseOptions& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
+  const MemoryLimit memory(scene_file.limits.memory);
   sim::RunResult result;
   with_scene(scene_file, [&](auto& built, const auto& scene) {
     sim::RunSetup setup;

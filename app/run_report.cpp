@@ -27,7 +27,7 @@ const char* ending_name(sim::RunEnding ending) {
 }  // namespace
 
 int exit_code_of(const sim::RunResult& result) {
-  return result.ending == sim::RunEnding::failed || result.ending == sim::RunEnding::stopped ? 1 : 0;
+  return result.ending == sim::RunEnding::failed || result.ending == sim::RunEnding::stopped || !result.over_limits.empty() ? 1 : 0;
 }
 
 nlohmann::json run_result_json(const sim::RunResult& result, const std::filesystem::path& file) {
@@ -39,6 +39,7 @@ nlohmann::json run_result_json(const sim::RunResult& result, const std::filesyst
                       {"wall_seconds", result.wall_seconds},
                       {"particle_steps", result.particle_steps}};
   if (!result.message.empty()) json["message"] = result.message;
+  if (!result.over_limits.empty()) json["over_limits"] = result.over_limits;
   for (std::size_t k = 0; k < result.columns.size() && k < result.last_row.size(); ++k)
     json["last"][result.columns[k]] = result.last_row[k];
   return json;
@@ -52,6 +53,7 @@ void print_run_result(const sim::RunResult& result, const std::filesystem::path&
                 static_cast<long long>(result.steps), static_cast<long long>(result.frames), duration_text(result.wall_seconds).c_str());
   }
   if (!result.message.empty()) std::fprintf(stderr, "%s: %s\n", file.string().c_str(), result.message.c_str());
+  for (const std::string& line : result.over_limits) std::fprintf(stderr, "%s: %s\n", file.string().c_str(), line.c_str());
 }
 
 void print_profile(const sim::RunResult& result) {

@@ -191,7 +191,7 @@ BodySpec read_body(const toml::table& table, const std::string& path, const Scen
   BodySpec body;
   body.spot = reader.spot();
   body.name = reader.text("name");
-  if (body.name.empty() || body.name.find_first_of(". /\\\n") != std::string::npos)
+  if (!usable_name(body.name))
     refuse(reader.spot("name"), "\"" + body.name + "\" can't be a name", "use letters, digits, - and _");
   const std::string kind = reader.choice("kind", {"fluid", "elastic", "wall"});
   body.kind = kind == "fluid" ? sim::Kind::fluid : kind == "wall" ? sim::Kind::wall : sim::Kind::elastic;

@@ -96,6 +96,7 @@ PortSpec read_port(const toml::table& table, const std::string& path, const Scen
   spec.spot = reader.spot();
   sim::Port<3>& port = spec.port;
   port.name = reader.text("name");
+  if (!usable_name(port.name)) refuse(reader.spot("name"), "\"" + port.name + "\" can't be a name", "use letters, digits, - and _");
   const bool of_patient = context.patient && (port.name == "ventricle" || port.name == "aorta");
   spec.has_plane = reader.has("plane") || !of_patient;
   if (spec.has_plane) {
@@ -131,7 +132,7 @@ ProbeSpec read_probe(const toml::table& table, const std::string& path, const Sc
   spec.spot = reader.spot();
   sim::Probe<3>& probe = spec.probe;
   probe.name = reader.text("name");
-  if (probe.name.empty() || probe.name.find_first_of(",. /\\\n\"") != std::string::npos)
+  if (!usable_name(probe.name))
     refuse(reader.spot("name"), "\"" + probe.name + "\" can't be the name of a column", "use letters, digits, - and _");
   probe.quantity = read_quantity(reader);
   if (reader.has("body")) probe.body = index_of(reader.text("body"), context.body_names, reader.spot("body"), "body");

@@ -21,6 +21,10 @@ struct Spot {
 };
 [[noreturn]] void refuse(const Spot& spot, const std::string& problem, const std::string& mend = "");
 
+// Whether a name can stand in a column's heading, a dotted path and a file's name: not empty, no comma, dot, space, slash, quote or control
+// character. So no scene can write outside its run's folder.
+bool usable_name(std::string_view name);
+
 // The candidate nearest to `word` by edit distance, or "" where none is near enough to be meant.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates);
 

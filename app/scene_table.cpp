@@ -64,6 +64,11 @@ void refuse(const Spot& spot, const std::string& problem, const std::string& men
   throw SceneError(line);
 }
 
+bool usable_name(std::string_view name) {
+  return !name.empty() && name.find_first_of(",. /\\\"") == std::string_view::npos &&
+         std::none_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+}
+
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 2) + 1;

@@ -309,7 +309,8 @@ std::vector<std::int64_t> estimate_particle_counts(const std::vector<PlacedBody>
     PlacementOptions coarse = options;
     coarse.spacing = std::max(options.spacing, extent / 64);
     const PlacementLattice lattice = make_placement_lattice(bodies, {int(b)}, coarse);
-    counts.push_back(std::llround(true_volume(bodies[b], lattice, options) / std::pow(options.spacing, options.dimension)));
+    const double count = true_volume(bodies[b], lattice, options) / std::pow(options.spacing, options.dimension);
+    counts.push_back(std::llround(std::min(count, 1e15)));  // beyond any limit, and sums of them still fit
   }
   return counts;
 }

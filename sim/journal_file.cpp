@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <map>
 #include <string>
@@ -49,6 +50,41 @@ bool read_all(int file, void* data, std::size_t size, off_t at) {  // beyond the
   return true;
 }
 
+// The number at `place` of the journal.
+std::uint64_t number_at(const Bytes& bytes, std::size_t place) {
+  std::uint64_t value = 0;
+  std::memcpy(&value, bytes.data() + place, 8);
+  return value;
+}
+
+// Whether the journal is complete: magic, checksum, and entries that end where it ends.
+bool complete(const Bytes& bytes) {
+  if (bytes.size() < 24 || number_at(bytes, 0) != journal_magic || number_at(bytes, 8) != checksum(bytes, 16)) return false;
+  std::size_t place = 24;
+  for (std::uint64_t i = 0; i < number_at(bytes, 16); ++i) {
+    if (bytes.size() - place < 16 || bytes.size() - place - 16 < number_at(bytes, place + 8)) return false;
+    place += 16 + number_at(bytes, place + 8);
+  }
+  return true;
+}
+
+// Applies a complete journal to its file, drops an incomplete one; then removes it. A journal that could not be applied stays.
+void settle_journal(int file, int journal, const std::string& name) {
+  struct stat about {};
+  fstat(journal, &about);
+  Bytes bytes(static_cast<std::size_t>(about.st_size));
+  bool good = true;
+  if (read_all(journal, bytes.data(), bytes.size(), 0) && complete(bytes)) {
+    std::size_t place = 24;
+    for (std::uint64_t i = 0; i < number_at(bytes, 16); ++i) {
+      const std::uint64_t size = number_at(bytes, place + 8);
+      good = good && file >= 0 && write_all(file, bytes.data() + place + 16, size, static_cast<off_t>(number_at(bytes, place)));
+      place += 16 + size;
+    }
+  }
+  if (good) unlink(journal_name(name).c_str());
+}
+
 // The open file. The first member has to be the library's.
 struct JournalFile {
   H5FD_t base{};
@@ -56,6 +92,7 @@ struct JournalFile {
   std::string name;
   haddr_t end_of_allocation = 0, size = 0;
   haddr_t finished = 0;              // bytes of the last finished state
+  bool broken = false;               // a write failed (disk full): what came since the last finished state will never reach the file
   std::map<haddr_t, Bytes> pending;  // changes before `finished`, not overlapping
   dev_t device = 0;
   ino_t inode = 0;
@@ -102,16 +139,45 @@ Bytes journal_bytes(const std::map<haddr_t, Bytes>& pending) {
 }
 
 bool commit(JournalFile& file) {
+  if (file.broken) return false;
   if (!file.pending.empty()) {
+    file.broken = true;  // until all of it is there; a complete journal is applied again by whoever opens the file next
     const Bytes bytes = journal_bytes(file.pending);
     if (!write_all(file.journal, bytes.data(), bytes.size(), 0)) return false;
     for (const auto& [address, change] : file.pending)
       if (!write_all(file.file, change.data(), change.size(), static_cast<off_t>(address))) return false;
     if (ftruncate(file.journal, 0) != 0) return false;
     file.pending.clear();
+    file.broken = false;
   }
   file.finished = file.size;
   return true;
+}
+
+thread_local std::string problem;  // why the last file could not be opened
+
+// The journal, opened and locked; -1 where that fails. It is emptied: what a killed writer left has been recovered before.
+int lock_journal(const std::string& file) {
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    const int journal = open(journal_name(file).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (journal < 0) {
+      problem = std::strerror(errno);
+      return -1;
+    }
+    if (flock(journal, LOCK_EX | LOCK_NB) != 0) {
+      problem = "another run is writing it; wait for it, or stop it";
+      close(journal);
+      return -1;
+    }
+    struct stat mine {
+    }, there{};  // whoever had it before may have removed it in between
+    if (fstat(journal, &mine) == 0 && stat(journal_name(file).c_str(), &there) == 0 && mine.st_ino == there.st_ino &&
+        ftruncate(journal, 0) == 0)
+      return journal;
+    close(journal);
+  }
+  problem = "its journal can't be locked";
+  return -1;
 }
 
 H5FD_t* open_file(const char* name, unsigned flags, hid_t, haddr_t) {
@@ -120,23 +186,20 @@ H5FD_t* open_file(const char* name, unsigned flags, hid_t, haddr_t) {
   if (flags & H5F_ACC_TRUNC) mode |= O_TRUNC;
   if (flags & H5F_ACC_CREAT) mode |= O_CREAT;
   if (flags & H5F_ACC_EXCL) mode |= O_EXCL;
+  const int journal = writing ? lock_journal(name) : -1;  // before the file is touched: it may be another's
+  if (writing && journal < 0) return nullptr;
   const int descriptor = open(name, mode | O_CLOEXEC, 0666);
-  if (descriptor < 0) return nullptr;
+  if (descriptor < 0) {
+    problem = std::strerror(errno);
+    if (journal >= 0) unlink(journal_name(name).c_str()), close(journal);
+    return nullptr;
+  }
   auto* file = new JournalFile;
-  file->file = descriptor, file->name = name;
+  file->file = descriptor, file->name = name, file->journal = journal;
   struct stat about {};
   fstat(descriptor, &about);
   file->size = file->finished = static_cast<haddr_t>(about.st_size);
   file->device = about.st_dev, file->inode = about.st_ino;
-  if (writing) {
-    file->journal = open(journal_name(name).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (file->journal < 0 || flock(file->journal, LOCK_EX | LOCK_NB) != 0 || ftruncate(file->journal, 0) != 0) {
-      if (file->journal >= 0) close(file->journal);
-      close(descriptor);
-      delete file;
-      return nullptr;
-    }
-  }
   return &file->base;
 }
 
@@ -144,8 +207,9 @@ herr_t close_file(H5FD_t* base) {
   JournalFile* file = of(base);
   bool good = true;
   if (file->journal >= 0) {
-    good = commit(*file);
-    if (good) unlink(journal_name(file->name).c_str());
+    const bool was_broken = file->broken;
+    good = commit(*file) || was_broken;  // a failure before has been told by the flush that met it
+    if (good) settle_journal(file->file, file->journal, file->name);
     close(file->journal);
   }
   close(file->file);
@@ -189,19 +253,25 @@ herr_t write_bytes(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t at, std::size_t size
   const auto* bytes = static_cast<const unsigned char*>(buffer);
   const std::size_t before = at < file->finished ? std::min<std::size_t>(size, file->finished - at) : 0;
   if (before > 0) add_pending(*file, at, bytes, before);
-  if (before < size && !write_all(file->file, bytes + before, size - before, static_cast<off_t>(at + before))) return -1;
+  // A write that fails is not told to the library, which could not close the file any more: it goes on in memory, and the next flush fails.
+  const haddr_t behind = at + before;
+  if (before < size && (file->broken || !write_all(file->file, bytes + before, size - before, static_cast<off_t>(behind)))) {
+    file->broken = true;
+    add_pending(*file, behind, bytes + before, size - before);
+  }
   file->size = std::max<haddr_t>(file->size, at + size);
   return 0;
 }
 
-herr_t flush(H5FD_t* base, hid_t, hbool_t) {
+herr_t flush(H5FD_t* base, hid_t, hbool_t closing) {
   JournalFile* file = of(base);
+  if (closing && file->broken) return 0;  // dropped by close_file
   return file->journal < 0 || commit(*file) ? 0 : -1;
 }
 
 herr_t truncate_file(H5FD_t* base, hid_t, hbool_t) {
   JournalFile* file = of(base);
-  if (file->journal < 0 || file->end_of_allocation <= file->size) return 0;  // a longer file does no harm
+  if (file->journal < 0 || file->broken || file->end_of_allocation <= file->size) return 0;  // a longer file does no harm
   if (ftruncate(file->file, static_cast<off_t>(file->end_of_allocation)) != 0) return -1;
   file->size = file->end_of_allocation;
   return 0;
@@ -241,30 +311,13 @@ bool recover_journal(const std::filesystem::path& file) {
     close(journal);
     return true;
   }
-  struct stat about {};
-  fstat(journal, &about);
-  Bytes bytes(static_cast<std::size_t>(about.st_size));
-  std::uint64_t magic = 0, sum = 0, count = 0;
-  if (bytes.size() >= 24 && read_all(journal, bytes.data(), bytes.size(), 0)) {
-    std::memcpy(&magic, bytes.data(), 8);
-    std::memcpy(&sum, bytes.data() + 8, 8);
-    std::memcpy(&count, bytes.data() + 16, 8);
-  }
-  if (magic == journal_magic && sum == checksum(bytes, 16)) {
-    const int target = open(file.c_str(), O_RDWR | O_CLOEXEC);
-    std::size_t place = 24;
-    for (std::uint64_t i = 0; target >= 0 && i < count; ++i) {
-      std::uint64_t at = 0, size = 0;
-      std::memcpy(&at, bytes.data() + place, 8);
-      std::memcpy(&size, bytes.data() + place + 8, 8);
-      write_all(target, bytes.data() + place + 16, size, static_cast<off_t>(at));
-      place += 16 + size;
-    }
-    if (target >= 0) close(target);
-  }
-  unlink(name.c_str());
+  const int target = open(file.c_str(), O_RDWR | O_CLOEXEC);
+  settle_journal(target, journal, file.string());
+  if (target >= 0) close(target);
   close(journal);
   return false;
 }
+
+std::string journal_problem() { return problem; }
 
 }  // namespace sim

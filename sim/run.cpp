@@ -6,9 +6,11 @@
 #include <optional>
 
 #include "sim/elastic_stress.h"
+#include "sim/ledger.h"
 #include "sim/run_columns.h"
 #include "sim/static_solution.h"
 #include "sim/stress.h"
+#include "sim/work_memory.h"
 
 namespace sim {
 namespace {
@@ -94,6 +96,7 @@ struct Running {
   void checkpoint(const std::string& status) {
     Checkpoint saved = book;
     saved.wall_seconds = wall();
+    saved.memory = work_memory(work);
     writer->set_checkpoint(state, saved);
     writer->set_status(status, saved.wall_seconds, state.step);
     writer->finish();
@@ -110,6 +113,7 @@ struct Running {
     const double slack = 1e-9 * scene.description.time.output;
     if (state.time < book.next_output - slack) return;
     const std::vector<std::vector<double>> after = probes.evaluate(scene, state);
+    measure_ledger(scene, state, scratch);
     while (state.time >= book.next_output - slack && book.rows <= last_output()) {
       const double time = book.next_output;
       const double share = state.time > from && time < state.time - slack ? std::clamp((time - from) / (state.time - from), 0.0, 1.0) : 1;
@@ -137,6 +141,7 @@ struct Running {
         if (reader.header().columns != complete_header(scene, setup.header).columns)
           throw std::runtime_error(setup.file.string() + ": was written for another scene; run it again without --continue");
       }
+      restore_work(scene, book.memory, work);
       book.next_output = output_time(book.rows);  // the end may have been moved
       writer = RunWriter::resume(setup.file, book);
       return;
@@ -144,6 +149,7 @@ struct Running {
     state = initial;
     writer = RunWriter::create(setup.file, complete_header(scene, setup.header));
     for (const std::string& warning : setup.warnings) writer->add_warning(warning);
+    measure_ledger(scene, state, scratch);
     write_row(0, probes.evaluate(scene, state));
     book.next_output = output_time(1);
     write_frame();
@@ -202,11 +208,21 @@ struct Running {
         if (state.step > 0) write_frame();
         end(RunEnding::failed, std::string("failed: ") + failure.what(), failure.what());
         return;
+      } catch (const std::bad_alloc&) {
+        work = {}, scratch = {};  // room to say so; the last checkpoint stays, the present state may be half a step
+        const std::string message = "not enough memory at t = " + std::to_string(state.time) +
+                                    " s; make the spacing larger, or raise limits.memory or the system's limit; `--continue` goes on";
+        writer->set_status("failed: " + message, wall(), state.step);
+        writer->finish();
+        result.ending = RunEnding::failed, result.message = message;
+        return;
       }
       result.particle_steps += static_cast<double>(state.size());
       write_outputs(from, before);
       report();
     }
+    result.over_limits = over_limits(scene, state);
+    for (const std::string& line : result.over_limits) writer->add_warning(line);
     end(RunEnding::finished, "finished", "");
   }
 };

@@ -44,6 +44,7 @@ struct RunResult {
   std::vector<double> stage_seconds;  // by Stage, of this part
   std::vector<std::string> columns;
   std::vector<double> last_row;
+  std::vector<std::string> over_limits;  // of a finished run: books of the ledger over their limits (ledger.h)
 };
 
 template <int D>

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -72,11 +73,14 @@ struct RunFrame {
   std::size_t size() const { return position.size(); }
 };
 
-// Everything a run goes on from.
+using NamedNumbers = std::map<std::string, std::vector<double>>;
+
+// Everything a run goes on from, beside the state.
 struct Checkpoint {
   std::int64_t frames = 0, rows = 0;  // finished when it was taken
   double wall_seconds = 0;            // spent so far
   double next_output = 0;             // s
+  NamedNumbers memory{};              // of the solver (work_memory.h)
 };
 
 class RunWriter {

@@ -139,6 +139,10 @@ std::pair<State<D>, Checkpoint> RunReader::checkpoint() const {
   checkpoint.rows = h5::integer_attribute(group, "rows");
   checkpoint.wall_seconds = h5::number_attribute(group, "wall_seconds");
   checkpoint.next_output = h5::number_attribute(group, "next_output");
+  if (h5::exists(group, "memory")) {
+    h5::Handle memory = h5::group(group, "memory");
+    for (const std::string& name : h5::children(memory)) checkpoint.memory[name] = h5::read_array<double>(memory, name);
+  }
   return {std::move(state), checkpoint};
 }
 template std::pair<State<2>, Checkpoint> RunReader::checkpoint<2>() const;

@@ -1,7 +1,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -39,9 +41,13 @@ std::string csv_heading(const std::vector<std::string>& columns) {
 
 void write_file(const fs::path& file, const std::string& text, bool append) {
   const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | (append ? O_APPEND : O_TRUNC), 0666);
+  const off_t before = descriptor >= 0 ? lseek(descriptor, 0, SEEK_END) : 0;
+  errno = 0;
   const bool good = descriptor >= 0 && ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  const std::string why = errno ? std::strerror(errno) : "the disk is full";
+  if (descriptor >= 0 && !good && ftruncate(descriptor, before) != 0) errno = 0;  // no half row; where even that fails, --continue mends it
   if (descriptor >= 0) close(descriptor);
-  if (!good) throw std::runtime_error(file.string() + ": can't be written; is the folder there, the disk full?");
+  if (!good) throw std::runtime_error(file.string() + ": can't be written: " + why);
 }
 
 std::string line_text(const RunHeader::LineInfo& line, double time, const std::vector<double>& values) {
@@ -117,16 +123,14 @@ RunWriter::~RunWriter() = default;
 
 RunWriter RunWriter::create(const fs::path& file, const RunHeader& header) {
   h5::quiet();
-  recover_journal(file);
-  auto data = std::make_unique<Data>();
-  data->path = file, data->header = header;
   std::error_code error;
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
-  fs::remove(file, error);
+  if (recover_journal(file)) throw std::runtime_error(file.string() + ": another run is writing it; wait for it, or stop it");
+  auto data = std::make_unique<Data>();
+  data->path = file, data->header = header;
   h5::Handle access(journal_access(), H5Pclose, file.string());
   const hid_t opened = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
-  if (opened < 0)
-    throw std::runtime_error(file.string() + ": can't be written; is another run writing it, the folder there, the disk full?");
+  if (opened < 0) throw std::runtime_error(file.string() + ": can't be written: " + journal_problem());
   data->file = h5::Handle(opened, H5Fclose, file.string());
   write_header(data->file, header);
   h5::write_text(data->file, "status", "running");
@@ -144,7 +148,7 @@ RunWriter RunWriter::resume(const fs::path& file, const Checkpoint& checkpoint) 
   data->path = file;
   h5::Handle access(journal_access(), H5Pclose, file.string());
   const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDWR, access);
-  if (opened < 0) throw std::runtime_error(file.string() + ": can't be opened for writing");
+  if (opened < 0) throw std::runtime_error(file.string() + ": can't be written: " + journal_problem());
   data->file = h5::Handle(opened, H5Fclose, file.string());
   data->header = read_header(data->file);
   data->frames = static_cast<std::size_t>(checkpoint.frames);
@@ -214,6 +218,8 @@ void RunWriter::set_checkpoint(const State<D>& state, const Checkpoint& checkpoi
   h5::set_attribute(group, "rows", checkpoint.rows);
   h5::set_attribute(group, "wall_seconds", checkpoint.wall_seconds);
   h5::set_attribute(group, "next_output", checkpoint.next_output);
+  h5::Handle memory = h5::group(group, "memory");
+  for (const auto& [name, values] : checkpoint.memory) h5::write_array(memory, name, values, 1, "", false);
   h5::set_attribute(group, "taken", static_cast<std::int64_t>(1));
 }
 template void RunWriter::set_checkpoint<2>(const State<2>&, const Checkpoint&);
@@ -230,7 +236,7 @@ void RunWriter::set_status(const std::string& status, double wall_seconds, std::
 }
 
 void RunWriter::finish() {
-  if (H5Fflush(data_->file, H5F_SCOPE_GLOBAL) < 0) throw std::runtime_error(data_->path.string() + ": can't be written; is the disk full?");
+  if (H5Fflush(data_->file, H5F_SCOPE_GLOBAL) < 0) throw std::runtime_error(data_->path.string() + ": can't be written; is the disk full? What was finished before is kept");
   std::size_t number = data_->frames - data_->new_frames.size();
   for (const auto& [time, particles] : data_->new_frames) data_->xdmf->add_frame(frame_name(number++), time, particles);
   data_->new_frames.clear();

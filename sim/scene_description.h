@@ -178,6 +178,10 @@ struct Limits {
   std::int64_t particles = 5'000'000;
   std::int64_t memory = 0;                 // bytes; 0 = none
   double wall_time = 0;                    // s; 0 = none
+  // Of the ledger at the end of a run; over one of them the run counts as failed.
+  std::int64_t lost = 0;                   // particles neither inside nor accounted as out
+  double penetration = 4;                  // l0, deepest place of blood behind a leaflet or wall before it was put back
+  double density_error = 0.25;             // rms of n/n0 - 1
 };
 
 template <int D>

@@ -75,6 +75,7 @@ std::int64_t predict_solids(const Scene<D>& scene, State<D>& state, Workspace<D>
   input.substep_factor = scene.description.scheme.elastic_substep;
   const SolidStepReport report = advance_solids<D>(solids, input, work.solid_motion, work.solid_position, work.solid_velocity, mean);
   state.ledger.load_work += report.load_work;
+  state.ledger.viscous_loss += report.damping_loss;
   if (!scene.pressure) return report.substeps;
   if (std::abs(work.solid_factor_step - dt) > 0.05 * dt || ++work.solid_factor_age > 20) {
     work.solid_operator.factorise(solids, std::span(state.position).first(n), dt * dt);

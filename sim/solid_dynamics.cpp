@@ -92,6 +92,8 @@ void SolidOperator<D>::factorise(const SolidElasticity<D>& solid, std::span<cons
   assemble_tangent<D>(solid, *pattern_, position, work_, matrix_);
   matrix_ *= c;
   add_to_diagonal<D>(*pattern_, solid.mass, 1, matrix_);
+  factorised_at_.assign(position.begin(), position.begin() + static_cast<std::ptrdiff_t>(solid.size()));
+  factorised_for_ = c;
   if (!solver_.factorise(matrix_)) throw std::runtime_error("elastic operator M + c K could not be factorised");
 }
 

@@ -33,8 +33,8 @@ struct SolidStepReport {
   double damping_loss = 0;  // J
 };
 
-// What the solids' motion keeps between steps: scratch and the factorised matrix. Never saved: a run continued from a checkpoint makes its
-// own. One per solver.
+// What the solids' motion keeps between steps: scratch and the factorised matrix. A run continued from a checkpoint makes the factor again
+// where it was made (work_memory.h). One per solver.
 template <int D>
 struct SolidMotion {
   SolidWork<D> work;
@@ -42,7 +42,9 @@ struct SolidMotion {
   std::optional<SolidPattern<D>> pattern;
   Eigen::SparseMatrix<double> matrix;
   SymmetricSolver solver;
-  double factorised_for = 0;  // s, the d*h of the factor in `solver`; 0 = none
+  double factorised_for = 0;              // s, the d*h of the factor in `solver`; 0 = none
+  std::vector<Vector<D>> factorised_at;   // m, positions it was made at
+  bool factor_lost = false;               // factorised_for and factorised_at are known, the factor itself has to be made again
 };
 
 // Advances position and velocity (first n rows) by input.duration. mean_force: time mean of everything but external_force and the added
@@ -70,8 +72,13 @@ class SolidOperator {
   void factorise(const SolidElasticity<D>& solid, std::span<const Vector<D>> position, double c);
   // rhs and solution per row (held axes 0 in the solution).
   void solve(std::span<const Vector<D>> rhs, std::span<Vector<D>> solution) const;
+  // What the present factor was made of; empty and 0 before the first.
+  const std::vector<Vector<D>>& factorised_at() const { return factorised_at_; }
+  double factorised_for() const { return factorised_for_; }
 
  private:
+  std::vector<Vector<D>> factorised_at_;  // m
+  double factorised_for_ = 0;             // c
   std::optional<SolidPattern<D>> pattern_;
   Eigen::SparseMatrix<double> matrix_;
   SolidWork<D> work_;

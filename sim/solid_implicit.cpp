@@ -54,7 +54,10 @@ class Stage {
   bool solve(const std::vector<Vector<D>>& guess, const std::vector<Vector<D>>& drift, std::span<Vector<D>> position,
              std::span<Vector<D>> velocity, double extent, SolidStepReport& report) {
     bool fresh = false;
-    if (motion_.factorised_for != s_) fresh = factorise(position, report);
+    if (motion_.factorised_for != s_)
+      fresh = factorise(position, report);
+    else if (motion_.factor_lost)
+      factorise(std::vector<Vector<D>>(motion_.factorised_at), report);  // the run was continued
     double previous = 1e300;
     std::vector<Vector<D>> residual(solid_.size());
     for (int iteration = 0; iteration < 60; ++iteration) {
@@ -102,6 +105,8 @@ class Stage {
         }
     }
     ++report.factorisations;
+    motion_.factorised_at.assign(position.begin(), position.begin() + static_cast<std::ptrdiff_t>(solid_.size()));
+    motion_.factor_lost = false;
     if (!motion_.solver.factorise(motion_.matrix)) throw std::runtime_error("implicit elastic step: the matrix M + s^2 K is singular");
     motion_.factorised_for = s_;
     return true;

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "sim/leaflet_coupling.h"
+#include "sim/ledger.h"
 #include "sim/number_density.h"
 #include "sim/operators.h"
 #include "sim/parallel.h"
@@ -132,6 +133,8 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
     separate_particles(scene, state, work);
   });
   if (scene.sheet) timed(clocks, Stage::sides, [&] { keep_sides(scene, state, work); });
+  account_fluid(scene, state, work, dt);
+  if (scene.shells) account_shell_loads<D>(scene, state, work.shell_outer_force, work.boundary_force, dt);
   timed(clocks, Stage::exchange, [&] {
     exchange_through_ports(scene, state, dt);
     remove_escaped(scene, state);
@@ -156,6 +159,7 @@ void step_dry(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double
   state.ledger.limiter_hits += shells.limiter_hits;
   std::copy(work.shell_position.begin(), work.shell_position.end(), state.position.begin() + scene.elastic_count);
   std::copy(work.shell_velocity.begin(), work.shell_velocity.end(), state.velocity.begin() + scene.elastic_count);
+  account_shell_loads<D>(scene, state, work.shell_outer_force, {}, dt);
 }
 
 }  // namespace

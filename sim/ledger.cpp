@@ -1,0 +1,129 @@
+#include "sim/ledger.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "sim/parallel.h"
+#include "sim/rheology.h"
+#include "sim/step.h"
+
+namespace sim {
+
+template <int D>
+void account_fluid(const Scene<D>& scene, State<D>& state, const Workspace<D>& work, double dt) {
+  const std::size_t first = static_cast<std::size_t>(scene.first_fluid), count = state.size() - first;
+  const auto fluid = [&](std::size_t k) { return state.kind[first + k] == Kind::fluid; };
+  if (scene.viscosity)
+    state.ledger.viscous_loss += dt * scene.fluid_particle_volume * ordered_sum(count, [&](std::size_t k) {
+                                   if (!fluid(k)) return 0.0;
+                                   const double rate = shear_rate<D>(work.velocity_gradient[first + k]);
+                                   return work.viscosity[first + k] * rate * rate;
+                                 });
+  const auto mass = [&](std::size_t k) { return scene.density[state.body[first + k]] * scene.fluid_particle_volume; };
+  if (scene.gravity) {
+    const Vector<D>& gravity = scene.gravity->acceleration;
+    state.ledger.load_work +=
+        dt * ordered_sum(count, [&](std::size_t k) { return fluid(k) ? mass(k) * gravity.dot(state.velocity[first + k]) : 0.0; });
+  }
+  for (const auto& load : scene.description.loads) {
+    if (!load.acceleration || scene.description.bodies[load.body].kind != Kind::fluid) continue;
+    double power = 0;  // formulas are evaluated one after the other
+    for (std::size_t k = 0; k < count; ++k)
+      if (fluid(k) && state.body[first + k] == load.body)
+        power += mass(k) * load.acceleration(state.position[first + k], state.time).dot(state.velocity[first + k]);
+    state.ledger.load_work += dt * load_factor(load, state.time) * power;
+  }
+}
+
+template <int D>
+void account_shell_loads(const Scene<D>& scene, State<D>& state, std::span<const Vector<D>> outer, std::span<const Vector<D>> drag,
+                         double dt) {
+  double power = 0;
+  for (std::size_t s = 0; s < outer.size(); ++s) {
+    const std::size_t row = static_cast<std::size_t>(scene.elastic_count) + s;
+    const Vector<D> load = drag.empty() ? outer[s] : Vector<D>(outer[s] - drag[row]);
+    power += load.dot(state.velocity[row]);
+  }
+  state.ledger.load_work += dt * power;
+}
+
+namespace {
+
+template <int D>
+double kinetic_energy(const Scene<D>& scene, const State<D>& state) {
+  const std::size_t solids = static_cast<std::size_t>(scene.elastic_count), first = static_cast<std::size_t>(scene.first_fluid);
+  return 0.5 * ordered_sum(state.size(), [&](std::size_t i) {
+           const double squared = state.velocity[i].squaredNorm();
+           if (i >= first) return state.kind[i] == Kind::fluid ? scene.density[state.body[i]] * scene.fluid_particle_volume * squared : 0.0;
+           if (state.kind[i] == Kind::elastic) return scene.solids->mass[i] * squared;
+           return state.kind[i] == Kind::shell ? scene.shells->mass[i - solids] * squared : 0.0;
+         });
+}
+
+template <int D>
+double elastic_energy(const Scene<D>& scene, const State<D>& state, Workspace<D>& scratch) {
+  const std::size_t solids = static_cast<std::size_t>(scene.elastic_count), shells = static_cast<std::size_t>(scene.shell_count);
+  double energy = 0;
+  if (scene.solids) energy += solid_energy<D>(*scene.solids, std::span(state.position).first(solids), scratch.solid_motion.work);
+  if (scene.shells) energy += shell_energy<D>(*scene.shells, std::span(state.position).subspan(solids, shells));
+  return energy;
+}
+
+template <int D>
+double density_error(const Scene<D>& scene, const State<D>& state, Workspace<D>& scratch) {
+  find_neighborhood(scene, state, scratch);
+  double sum = 0, count = 0;
+  for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i) {
+    if (state.kind[i] != Kind::fluid || scratch.surface[i] != 0) continue;
+    bool beside_port = false;
+    for (std::int32_t j : scratch.neighbors.of(i)) beside_port = beside_port || state.kind[j] == Kind::port;
+    if (beside_port) continue;
+    const double error = scratch.number_density[i] - 1;
+    sum += error * error;
+    count += 1;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+}  // namespace
+
+template <int D>
+void measure_ledger(const Scene<D>& scene, State<D>& state, Workspace<D>& scratch) {
+  Ledger& ledger = state.ledger;
+  ledger.kinetic_energy = kinetic_energy(scene, state);
+  ledger.elastic_energy = elastic_energy(scene, state, scratch);
+  if (!scene.pressure) return;
+  ledger.density_error = density_error(scene, state, scratch);
+  std::int64_t balance = ledger.particles_in - ledger.particles_out;
+  for (Kind kind : scene.description.particles.kind) balance += kind == Kind::fluid;
+  for (Kind kind : state.kind) balance -= kind == Kind::fluid;
+  ledger.particles_lost = std::abs(balance);
+}
+
+template <int D>
+std::vector<std::string> over_limits(const Scene<D>& scene, const State<D>& state) {
+  std::vector<std::string> lines;
+  const Limits& limits = scene.description.limits;
+  const Ledger& ledger = state.ledger;
+  const auto check = [&](const char* what, const char* key, double value, double limit, const char* units) {
+    if (value <= limit) return;
+    char text[200];
+    std::snprintf(text, sizeof text, "ledger: %s %.4g%s is over %s = %.4g", what, value, units, key, limit);
+    lines.emplace_back(text);
+  };
+  check("particles lost", "limits.lost", static_cast<double>(ledger.particles_lost), static_cast<double>(limits.lost), "");
+  check("deepest penetration", "limits.penetration", ledger.deepest_penetration / scene.description.spacing, limits.penetration, " l0");
+  check("rms error of the density", "limits.density_error", ledger.density_error, limits.density_error, "");
+  return lines;
+}
+
+#define INSTANTIATE(D)                                                                                                           \
+  template void account_fluid(const Scene<D>&, State<D>&, const Workspace<D>&, double);                                          \
+  template void account_shell_loads(const Scene<D>&, State<D>&, std::span<const Vector<D>>, std::span<const Vector<D>>, double); \
+  template void measure_ledger(const Scene<D>&, State<D>&, Workspace<D>&);                                                       \
+  template std::vector<std::string> over_limits(const Scene<D>&, const State<D>&);
+INSTANTIATE(2)
+INSTANTIATE(3)
+#undef INSTANTIATE
+
+}  // namespace sim

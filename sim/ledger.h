@@ -1,0 +1,34 @@
+// The books of a run (State::ledger): what comes in, goes out and is lost, energies and the work done, and what is over a limit. Energies
+// are in J, in 2-D in J per metre of depth.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/scene.h"
+#include "sim/workspace.h"
+
+namespace sim {
+
+// Adds what the step just taken in the fluid did, before rows are exchanged: viscous_loss += dt sum V mu (shear rate)^2 over fluid, and
+// load_work += dt sum m a . v with a of gravity and of the loads on fluid bodies. Solids' loads: predict_solids; shells':
+// account_shell_loads.
+template <int D>
+void account_fluid(const Scene<D>& scene, State<D>& state, const Workspace<D>& work, double dt);
+
+// load_work += dt sum F . v over shells, F of loads and gravity. `outer`: with the blood's drag, N; `drag`: that drag, or empty.
+template <int D>
+void account_shell_loads(const Scene<D>& scene, State<D>& state, std::span<const Vector<D>> outer, std::span<const Vector<D>> drag,
+                         double dt);
+
+// What is measured once an output: kinetic_energy and elastic_energy now, density_error = rms of n/n0 - 1 over fluid with neither a free
+// surface nor an open end near, and particles_lost = |fluid at the start + in - out - fluid now|.
+template <int D>
+void measure_ledger(const Scene<D>& scene, State<D>& state, Workspace<D>& scratch);
+
+// One line for each book that is over its limit (Limits), with value and limit; empty where all is well.
+template <int D>
+std::vector<std::string> over_limits(const Scene<D>& scene, const State<D>& state);
+
+}  // namespace sim
