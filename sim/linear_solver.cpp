@@ -1,5 +1,7 @@
 #include "sim/linear_solver.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -42,16 +44,18 @@ std::vector<std::int32_t> aggregates(const MultigridLevel& fine, std::int32_t& c
     ++count;
   }
   const std::vector<std::int32_t> first = of;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (of[i] >= 0) continue;
+#pragma omp parallel for schedule(static)
+  for (Index i = 0; i < static_cast<Index>(n); ++i) {
+    if (first[i] >= 0) continue;
     float most = 0;
     for (std::int64_t k = fine.start[i]; k < fine.start[i + 1]; ++k)
       if (first[fine.column[k]] >= 0 && -fine.value[k] > most) {
         most = -fine.value[k];
         of[i] = first[fine.column[k]];
       }
-    if (of[i] < 0) of[i] = count++;
   }
+  for (std::size_t i = 0; i < n; ++i)
+    if (of[i] < 0) of[i] = count++;
   return of;
 }
 
@@ -66,32 +70,53 @@ MultigridLevel coarsen(const MultigridLevel& fine, std::vector<std::int32_t> of,
   for (std::size_t i = 0; i < n; ++i) member[next[of[i]]++] = static_cast<std::int32_t>(i);
   coarse.diagonal.assign(count, 0);
   coarse.start.assign(count + 1, 0);
-  std::vector<std::int32_t> seen(count, -1), columns;
-  std::vector<float> sums(count, 0);
-  for (std::int32_t a = 0; a < count; ++a) {
-    columns.clear();
-    for (std::int32_t m = start[a]; m < start[a + 1]; ++m) {
-      const std::int32_t i = member[m];
-      coarse.diagonal[a] += fine.diagonal[i];
-      for (std::int64_t k = fine.start[i]; k < fine.start[i + 1]; ++k) {
-        const std::int32_t b = of[fine.column[k]];
-        if (b == a) {
-          coarse.diagonal[a] += fine.value[k];
-        } else if (seen[b] != a) {
-          seen[b] = a;
-          sums[b] = fine.value[k];
-          columns.push_back(b);
-        } else {
-          sums[b] += fine.value[k];
+  struct Piece {  // one thread's rows, later put together in order
+    std::int32_t first = 0;
+    std::vector<std::int32_t> column;
+    std::vector<float> value;
+  };
+  std::vector<Piece> pieces(static_cast<std::size_t>(omp_get_max_threads()));
+#pragma omp parallel
+  {
+    Piece& piece = pieces[omp_get_thread_num()];
+    std::vector<std::int32_t> seen(count, -1), columns;
+    std::vector<float> sums(count, 0);
+    piece.first = count;
+#pragma omp for schedule(static)
+    for (std::int32_t a = 0; a < count; ++a) {
+      piece.first = std::min(piece.first, a);
+      columns.clear();
+      for (std::int32_t m = start[a]; m < start[a + 1]; ++m) {
+        const std::int32_t i = member[m];
+        coarse.diagonal[a] += fine.diagonal[i];
+        for (std::int64_t k = fine.start[i]; k < fine.start[i + 1]; ++k) {
+          const std::int32_t b = of[fine.column[k]];
+          if (b == a) {
+            coarse.diagonal[a] += fine.value[k];
+          } else if (seen[b] != a) {
+            seen[b] = a;
+            sums[b] = fine.value[k];
+            columns.push_back(b);
+          } else {
+            sums[b] += fine.value[k];
+          }
         }
       }
+      std::sort(columns.begin(), columns.end());
+      for (std::int32_t b : columns) {
+        piece.column.push_back(b);
+        piece.value.push_back(sums[b]);
+      }
+      coarse.start[a + 1] = static_cast<std::int64_t>(columns.size());
     }
-    std::sort(columns.begin(), columns.end());
-    for (std::int32_t b : columns) {
-      coarse.column.push_back(b);
-      coarse.value.push_back(sums[b]);
-    }
-    coarse.start[a + 1] = static_cast<std::int64_t>(coarse.column.size());
+  }
+  std::partial_sum(coarse.start.begin(), coarse.start.end(), coarse.start.begin());
+  std::sort(pieces.begin(), pieces.end(), [](const Piece& p, const Piece& q) { return p.first < q.first; });
+  coarse.column.reserve(coarse.start[count]);
+  coarse.value.reserve(coarse.start[count]);
+  for (const Piece& piece : pieces) {
+    coarse.column.insert(coarse.column.end(), piece.column.begin(), piece.column.end());
+    coarse.value.insert(coarse.value.end(), piece.value.begin(), piece.value.end());
   }
   coarse.aggregate = std::move(of);
   return coarse;

@@ -7,6 +7,7 @@
 #include "sim/ledger.h"
 #include "sim/number_density.h"
 #include "sim/operators.h"
+#include "sim/ordering.h"
 #include "sim/parallel.h"
 #include "sim/ports.h"
 #include "sim/pressure.h"
@@ -195,6 +196,8 @@ StepReport step(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
   const StepLimit limit = time_step_limit(scene, state, until);
   double dt = limit.step;
   report.limited_by = limit.name;
+  constexpr std::int64_t sorting_interval = 32;  // steps; particles pass a cell in some hundred
+  if (scene.pressure && state.step % sorting_interval == 0) sort_by_cells(scene, state);
   const State<D> before = state;
   for (;;) {
     try {
