@@ -28,16 +28,16 @@ ShellSubstepReport predict_leaflets(const Scene<D>& scene, const State<D>& state
   double blood_density = 0;
   for (const auto& body : scene.description.bodies)
     if (body.kind == Kind::fluid) blood_density = std::max(blood_density, body.fluid.density);
-  work.shell_local_mass.resize(n);
+  work.shell_normal_mass.resize(n);
   for (Index s = 0; s < n; ++s) {
     external[s] += state.fluid_force[first + s];
     const double thickness = shells.bodies[shells.body[s]].thickness, l0 = scene.lattice.spacing;
-    work.shell_local_mass[s] =
-        scene.description.scheme.added_mass * blood_density * work.shell_area[s] * std::max(l0 - thickness, 0.5 * l0);
+    const double local = scene.description.scheme.added_mass * blood_density * work.shell_area[s] * std::max(l0 - thickness, 0.5 * l0);
     // of the blood farther out a part follows the leaflet at once, at last step's acceleration
-    const double follows = scene.description.scheme.resolved_mass * (shells.mass[s] + work.shell_local_mass[s]);
-    added[s] = work.shell_local_mass[s] + follows;
+    const double follows = scene.description.scheme.resolved_mass * (shells.mass[s] + local);
+    added[s] = local + follows;
     reference[s] = follows / added[s] * state.fluid_acceleration[first + s];
+    work.shell_normal_mass[s] = shells.mass[s] + (scene.pressure ? added[s] : 0.0);
   }
   work.shell_mean_force.resize(n);
   ShellSubstepInput<D> input;
@@ -53,9 +53,10 @@ ShellSubstepReport predict_leaflets(const Scene<D>& scene, const State<D>& state
   work.shell_free_velocity.resize(n);
   for (Index s = 0; s < n; ++s) {
     const Vector<D> force = work.shell_mean_force[s] + work.shell_outer_force[s];
-    const double along = force.dot(work.shell_normal[s]), mass = shells.mass[s];
-    Vector<D> v = state.velocity[first + s] +
-                  dt * ((force - along * work.shell_normal[s]) / mass + along / (mass + work.shell_local_mass[s]) * work.shell_normal[s]);
+    const double along = force.dot(work.shell_normal[s]);
+    const double carried = scene.pressure ? added[s] * reference[s].dot(work.shell_normal[s]) : 0.0;
+    Vector<D> v = state.velocity[first + s] + dt * ((force - along * work.shell_normal[s]) / shells.mass[s] +
+                                                    (along + carried) / work.shell_normal_mass[s] * work.shell_normal[s]);
     for (int k = 0; k < D; ++k)
       if (shells.fixed[s] >> k & 1) v[k] = 0;
     work.shell_free_velocity[s] = v;
@@ -96,7 +97,7 @@ void couple_leaflets(const Scene<D>& scene, const State<D>& state, Workspace<D>&
     if (shells.fixed[s]) continue;
     const double area = work.shell_area[s];
     const double jump = (work.shell_free_velocity[s] - state.velocity[first + s]).dot(work.shell_normal[s]);
-    work.coupling.push_back({static_cast<std::int32_t>(s), area * area / (shells.mass[s] + work.shell_local_mass[s])});
+    work.coupling.push_back({static_cast<std::int32_t>(s), area * area / work.shell_normal_mass[s]});
     displaced[2 * s] = area * jump / dt;
     displaced[2 * s + 1] = -displaced[2 * s];
   }
@@ -175,7 +176,7 @@ void correct_leaflets(const Scene<D>& scene, State<D>& state, Workspace<D>& work
     state.pressure[first + s] = 0.5 * (p_plus + p_minus);
     const Vector<D> force = -work.shell_area[s] * (p_plus - p_minus) * work.shell_normal[s];
     state.fluid_force[first + s] = force;
-    Vector<D> v = work.shell_free_velocity[s] + dt / (shells.mass[s] + work.shell_local_mass[s]) * force;
+    Vector<D> v = work.shell_free_velocity[s] + dt / work.shell_normal_mass[s] * force;
     for (int k = 0; k < D; ++k)
       if (shells.fixed[s] >> k & 1) v[k] = 0;
     state.fluid_acceleration[first + s] = (v - state.velocity[first + s]) / dt;

@@ -5,9 +5,11 @@
 //   v_b = v^_b - dt/m A (p+ - p-) N
 //   volume balance of blood i (times V):  ... = ... + sum_b s w_i A (v_b - v_b^n).N / dt,  s = +1 on the normal's side, -1 on the other.
 // where m is, along the normal, the leaflet's own mass plus that of the blood within its lattice layer, rho A (l0 - h): a leaflet particle
-// stands in the place of a layer l0 thick but is only h thick. The elastic sub-steps move the same mass.
-// Eliminating v_b adds sum_b A²/m g g^T to the pressure matrix, g = (s w_i): symmetric and positive, so force and displaced volume are
-// each other's adjoint and the leaflet's real mass stabilises the coupling at any density ratio.
+// stands in the place of a layer l0 thick but is only h thick; and a share m_r of that again for the blood farther out, which follows at
+// last step's acceleration, m a^n = ... + m_r a^(n-1). The elastic sub-steps move the same mass under the same push: what differs between
+// them and this equation would be fed to the waves that no blood particle feels. Eliminating v_b adds sum_b A²/m g g^T to the pressure
+// matrix, g = (s w_i): symmetric and positive, so force and displaced volume are each other's adjoint and the leaflet's real mass
+// stabilises the coupling at any density ratio.
 #pragma once
 
 #include "sim/scene.h"

@@ -19,12 +19,12 @@ enum class Kind : std::uint8_t { elastic = 0, shell = 1, wall = 2, fluid = 3, po
 // What went in and out, and what went wrong; cumulative over the run.
 struct Ledger {
   std::int64_t particles_in = 0, particles_out = 0, particles_lost = 0;
-  std::int64_t penetrations = 0;           // fluid particles found behind a leaflet or wall and put back
-  std::int64_t sheet_crossings = 0;        // of these, through a leaflet
-  double deepest_penetration = 0;          // m
+  std::int64_t penetrations = 0;     // fluid particles found behind a leaflet or wall and put back
+  std::int64_t sheet_crossings = 0;  // of these, through a leaflet
+  double deepest_penetration = 0;    // m
   std::int64_t refused_steps = 0, limiter_hits = 0, pressure_iterations = 0, elastic_substeps = 0;
   double kinetic_energy = 0, elastic_energy = 0, viscous_loss = 0, port_work = 0, load_work = 0;  // J (2-D: J per metre of depth)
-  double density_error = 0;                // rms of n/n0 - 1 over interior fluid, last step
+  double density_error = 0;  // rms of n/n0 - 1 over interior fluid, last step
 };
 
 // Structure of arrays; one row a particle. Rows are grouped: elastic bodies first (each body a contiguous range, in body order), then
@@ -32,28 +32,28 @@ struct Ledger {
 // come and go and may be reordered, `id` is what stays.
 template <int D>
 struct State {
-  double time = 0;                         // s (load factor in static mode)
-  double last_step = 0;                    // s, size of the step that led here; 0 at the start
+  double time = 0;       // s (load factor in static mode)
+  double last_step = 0;  // s, size of the step that led here; 0 at the start
   std::int64_t step = 0;
   std::int64_t next_id = 0;
 
   std::vector<std::int64_t> id;
   std::vector<Kind> kind;
-  std::vector<std::int32_t> body;          // index into Scene::bodies
-  std::vector<std::int32_t> port;          // index into Scene::ports for Kind::port, else -1
-  std::vector<Vector<D>> position;         // m
-  std::vector<Vector<D>> velocity;         // m/s
-  std::vector<double> pressure;            // Pa; a shell particle: mean of its two sides
+  std::vector<std::int32_t> body;   // index into Scene::bodies
+  std::vector<std::int32_t> port;   // index into Scene::ports for Kind::port, else -1
+  std::vector<Vector<D>> position;  // m
+  std::vector<Vector<D>> velocity;  // m/s
+  std::vector<double> pressure;     // Pa; a shell particle: mean of its two sides
 
   // Rows [0, elastic_count + shell_count): what blood does to the solids.
-  std::vector<Vector<D>> fluid_force;      // N, pressure force on the particle in the last step
+  std::vector<Vector<D>> fluid_force;         // N, pressure force on the particle in the last step
   std::vector<Vector<D>> fluid_acceleration;  // m/s², acceleration of the particle in the last step (for the added-mass predictor)
   // Rows of shells only, relative to the first shell row: pressures on the side its normal points to, and on the other. Pa
   std::vector<double> pressure_plus, pressure_minus;
 
-  std::vector<double> port_memory;         // per port: Windkessel pressure, Pa; with a given pressure the slow inflow speed, m/s
-  std::vector<double> port_flow;           // per port: volume flow in the last step, m³/s, inward positive
-  std::vector<double> port_volume;         // per port: volume that came in so far, m³
+  std::vector<double> port_memory;  // per port: Windkessel pressure, Pa; with a given pressure the slow inflow speed, m/s
+  std::vector<double> port_flow;    // per port: volume flow in the last step, m³/s, inward positive
+  std::vector<double> port_volume;  // per port: volume that came in so far, m³
   Ledger ledger;
 
   std::size_t size() const { return position.size(); }

@@ -77,7 +77,9 @@ template <int D>
 void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt) {
   const Index unknowns = static_cast<Index>(work.unknown_row.size());
   const double k = scene.lattice.laplacian_factor(), n0 = scene.lattice.number_density, volume = scene.fluid_particle_volume;
-  const double blend = scene.description.scheme.density_blend;
+  // The rate at which a density error is mended: with the step itself a step cut short would mend faster, drive blood faster, and be cut
+  // shorter still.
+  const double blend = scene.description.scheme.density_blend / (dt * std::max(dt, scene.description.scheme.maximum_step));
   SymmetricMatrix& a = work.matrix;
   a.diagonal.assign(unknowns, 0);
   a.start.assign(unknowns + 1, 0);
@@ -133,7 +135,7 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
     if (at_surface)  // the surface, where p = 0, lies half a spacing ahead; at least the missing neighbours count
       diagonal += volume * k / rho * std::max(work.surface_outward[i].norm() / (0.5 * scene.lattice.spacing), n0 * std::max(1 - n, 0.0));
     const double support = scene.sheet ? work.support[i] : 1.0;
-    source += support * volume * (-work.velocity_gradient[i].trace() / dt - divergence + blend * compression / (dt * dt));
+    source += support * volume * (-work.velocity_gradient[i].trace() / dt - divergence + blend * compression);
     a.diagonal[u] = diagonal > 0 ? diagonal : 1;
     work.source[u] = diagonal > 0 ? source : 0;
   }

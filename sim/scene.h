@@ -42,7 +42,7 @@ struct Scene {
   std::optional<Viscosity> viscosity;
   std::optional<Pressure> pressure;
   std::optional<SolidElasticity<D>> solids;
-  std::vector<Vector<D>> solid_normal;      // where solids meet fluid: outward normal of the nearest face at rest, per elastic row
+  std::vector<Vector<D>> solid_normal;  // where solids meet fluid: outward normal of the nearest face at rest, per elastic row
   std::optional<ShellElasticity<D>> shells;
   std::optional<Contact<D>> contact;
   std::shared_ptr<const SheetGeometry<D>> sheet;  // where there are shells in blood: their elements, for cutting links

@@ -68,10 +68,10 @@ struct ShellElasticity {
   std::vector<std::int32_t> bond_start, bond;
   std::vector<double> bond_length, bond_mass;         // m, kg
   std::vector<std::array<std::int32_t, D>> elements;  // mesh over shell rows (may be empty)
-  double bending_dashpot = 0;                         // 1/s: rate at which the shortest bending wave dies out; resists the rate of curvature only
-  double axial_dashpot = 0;                           // 1/s: pair force mass * dashpot * closing speed; 5000 with blood
-  double substep_factor = 0.35;                       // of l0/c
-  double rest_step = 0;                               // s, stable step of the unloaded shells at substep_factor
+  double bending_dashpot = 0;    // 1/s: rate at which the shortest bending wave dies out; resists the rate of curvature only
+  double axial_dashpot = 0;      // 1/s: pair force mass * dashpot * closing speed; 5000 with blood
+  double substep_factor = 0.35;  // of l0/c
+  double rest_step = 0;          // s, stable step of the unloaded shells at substep_factor
 
   std::size_t size() const { return rest_position.size(); }
   bool empty() const { return rest_position.empty(); }

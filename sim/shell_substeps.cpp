@@ -48,7 +48,7 @@ void advance(const ShellElasticity<D>& shells, const Contact<D>* contact, const 
   if (is_clamped(shells, i)) return;
   Padded<D> force = work.own[i] + gather_force(shells, work.derivative.data(), i);
   if (contact) force += contact_kernel::gather_contact(*contact, i);
-  work.mean[i] += force;
+  work.mean[i] += dt * force;  // sub-steps differ in length
   const double mass = shells.mass[i], damping = shells.bodies[shells.body[i]].damping;
   if (!input.external_force.empty()) force += pad<D>(input.external_force[i]);
   force -= (mass * damping) * work.v[i];
@@ -120,7 +120,7 @@ ShellSubstepReport shell_substeps(const ShellElasticity<D>& shells, Contact<D>* 
   }
   for (std::int32_t i = 0; i < rows; ++i) {
     velocity[i] = work.v[i].template head<D>();
-    if (!mean_force.empty()) mean_force[i] = work.mean[i].template head<D>() / static_cast<double>(report.substeps);
+    if (!mean_force.empty()) mean_force[i] = work.mean[i].template head<D>() / input.duration;
     report.limiter_hits += work.limited[i];
     report.fastest = std::max(report.fastest, velocity[i].norm());
   }

@@ -334,6 +334,9 @@ void keep_sides(const Scene<D>& scene, State<D>& state, Workspace<D>& work) {
     normal *= memory.side / std::max(normal.norm(), 1e-300);
     const double height = (state.position[i] - point).dot(normal);
     if (height >= clearance) continue;
+    // Nothing crosses by more than a step's motion: whoever seems to stands beside the elements looked at, near another part of the sheet.
+    const double aside = best - height * height;
+    if (aside > 0.25 * scene.lattice.spacing * scene.lattice.spacing || height < -0.5 * scene.lattice.spacing) continue;
     if (height < 0) {
       ++crossings;
       deepest = std::max(deepest, -height);

@@ -63,6 +63,8 @@ void wrap_positions(const Scene<D>& scene, State<D>& state) {
 template <int D>
 void check_step(const Scene<D>& scene, const State<D>& state, double dt) {
   const double l0 = scene.description.spacing;
+  if (dt < 1e-4 * scene.description.scheme.maximum_step && dt < state.last_step)
+    throw NumericalFailure("a speed ran away: the step fell below a ten-thousandth of scheme.maximum_step");
   for (std::size_t i = 0; i < state.size(); ++i) {
     const double speed = state.velocity[i].norm();
     if (std::isfinite(speed) && state.position[i].allFinite() && std::isfinite(state.pressure[i]) &&

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "sim/gap_film.h"
 #include "sim/contact.h"
+#include "sim/gap_film.h"
 #include "sim/linear_solver.h"
 #include "sim/neighbors.h"
 #include "sim/particles.h"
@@ -36,7 +36,7 @@ struct Workspace {
   std::vector<Tensor<D>> pressure_inverse;   // inverse moment matrix over fluid alone
   std::vector<Tensor<D>> velocity_gradient;  // (grad v)_ab = d v_a / d x_b, 1/s
   std::vector<double> viscosity;             // Pa s
-  std::vector<float> grip;  // 1, or less beside a port whose profile is not resolved: share of the wall's drag
+  std::vector<float> grip;                   // 1, or less beside a port whose profile is not resolved: share of the wall's drag
   std::vector<Vector<D>> acceleration;       // m/s², all but pressure
   std::vector<Vector<D>> pressure_gradient;  // Pa/m
   std::vector<Vector<D>> displacement;       // m, shifting
@@ -56,13 +56,13 @@ struct Workspace {
 
   // solids
   SolidMotion<D> solid_motion;
-  SolidOperator<D> solid_operator;          // M + dt² K
-  double solid_factor_step = 0;             // s, the dt it was factorised for
-  int solid_factor_age = 0;                 // steps since
+  SolidOperator<D> solid_operator;  // M + dt² K
+  double solid_factor_step = 0;     // s, the dt it was factorised for
+  int solid_factor_age = 0;         // steps since
   std::vector<Vector<D>> solid_position, solid_velocity;
   struct SolidLink {
     std::int32_t unknown;
-    Vector<D> area;                         // m² (2-D: m): volume flux of the unknown per unit velocity, and force per unit pressure
+    Vector<D> area;  // m² (2-D: m): volume flux of the unknown per unit velocity, and force per unit pressure
   };
   std::vector<std::int64_t> solid_link_start;
   std::vector<SolidLink> solid_links;
@@ -90,8 +90,8 @@ struct Workspace {
   };
   std::vector<SideMemory> side_memory;  // per entry of near_sheet
   std::vector<Vector<D>> shell_position, shell_velocity, shell_normal, shell_mean_force, shell_outer_force, shell_free_velocity;
-  std::vector<double> shell_area, shell_local_mass;  // m², kg: of the blood that moves with a leaflet particle along its normal
-  std::vector<Vector<D>> boundary_force;             // rows of solids and shells: the blood's drag, N
+  std::vector<double> shell_area, shell_normal_mass;  // m², kg: that moves along the normal, with the blood that follows
+  std::vector<Vector<D>> boundary_force;              // rows of solids and shells: the blood's drag, N
 
   std::vector<double> stage_seconds;  // per stage of the step, summed over this run
 };
