@@ -5,6 +5,7 @@
 #include "app/commands.h"
 #include "app/explain.h"
 #include "app/measure_effects.h"
+#include "app/measure_paper.h"
 #include "app/progress.h"
 
 namespace app {
@@ -13,7 +14,7 @@ namespace {
 struct Options {
   std::string scene;
   std::vector<std::string> settings;
-  bool measure = false, json = false;
+  bool measure = false, paper = false, json = false;
 };
 
 void print_plain(const nlohmann::json& about) {
@@ -62,6 +63,21 @@ void print_effects(const nlohmann::json& all) {
   }
 }
 
+void print_paper(const nlohmann::json& all) {
+  std::printf(
+      "| nu | G / E | lambda / E | G_eff / E: derived | operator | lambda_eff / E: derived | operator | E_eff / E: derived | bar | "
+      "von Mises inside / (F/A): derived | bar |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+  const double e = all["youngs_modulus"];
+  for (const auto& row : all["rows"]) {
+    const auto value = [&](const char* key) { return row[key].get<double>(); };
+    std::printf("| %.2f | %.3f | %.3f | %.3f | %.3f | %.3f | %.3f | %.2f | %.2f | %.3f | %.3f |\n", value("poisson_ratio"),
+                value("shear_modulus") / e, value("lame_lambda") / e, value("shear_modulus_derived") / e,
+                value("shear_modulus_measured") / e, value("lame_lambda_derived") / e, value("lame_lambda_measured") / e,
+                value("youngs_modulus_ratio_derived"), value("bar_stiffness_ratio_measured"), value("von_mises_ratio_derived"),
+                value("von_mises_ratio_measured"));
+  }
+}
+
 }  // namespace
 
 void add_explain_command(CLI::App& program, int& exit_code) {
@@ -71,9 +87,19 @@ void add_explain_command(CLI::App& program, int& exit_code) {
   command->add_option("SCENE", options->scene, "scene file (.toml); with --measure alone: what each effect costs");
   command->add_option("--set", options->settings, "KEY=VALUE; may be repeated")->allow_extra_args(false);
   command->add_flag("--measure", options->measure, "run a few steps and say what they cost");
+  command->add_flag("--paper", options->paper, "without a scene: what the published elastic operators simulate");
   command->add_flag("--json", options->json, "print one JSON object");
   command->callback([options, &exit_code] {
     if (options->scene.empty()) {
+      if (options->paper) {
+        const nlohmann::json paper = measure_paper();
+        if (options->json)
+          std::printf("%s\n", paper.dump(2).c_str());
+        else
+          print_paper(paper);
+        exit_code = 0;
+        return;
+      }
       if (!options->measure) throw CLI::RequiredError("SCENE");
       const nlohmann::json effects = measure_effects();
       if (options->json)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/paper_elasticity.h"
 #include "sim/solid_stress.h"
 #include "sim/stress.h"
 
@@ -33,7 +34,11 @@ ShellStress faces_stress(const Scene<D>& scene, const State<D>& state) {
 template <int D>
 std::vector<Eigen::Matrix3d> elastic_stress(const Scene<D>& scene, const State<D>& state) {
   std::vector<Eigen::Matrix3d> stress(static_cast<std::size_t>(scene.elastic_count + scene.shell_count), Eigen::Matrix3d::Zero());
-  if (scene.solids) {
+  if (scene.solids && scene.description.scheme.name == Scheme::paper) {
+    std::vector<Eigen::Matrix3d> solids;
+    paper_stress<D>(build_paper_elasticity(scene.description), rows_of(state, 0, scene.elastic_count), solids);
+    std::copy(solids.begin(), solids.end(), stress.begin());
+  } else if (scene.solids) {
     SolidWork<D> work;
     std::vector<Eigen::Matrix3d> solids;
     solid_stress(*scene.solids, rows_of(state, 0, scene.elastic_count), work, solids);

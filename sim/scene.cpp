@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "sim/number_density.h"
+#include "sim/paper_step.h"
 #include "sim/port_walls.h"
 #include "sim/ports.h"
 #include "sim/sides.h"
@@ -81,6 +82,7 @@ Scene<D> make_scene(SceneDescription<D> description) {
     shells = shells || body.kind == Kind::shell;
     solids = solids || body.kind == Kind::elastic;
   }
+  if (scheme.name == Scheme::paper) check_paper_scheme(description);
   if (!(description.spacing > 0)) throw std::invalid_argument("spacing must be positive");
   if (scheme.kernel_radius == 0) scheme.kernel_radius = D == 2 && !shells && !solids ? 3.1 : 2.1;
   if (scheme.subparticle_dissipation < 0) scheme.subparticle_dissipation = shells ? 0.3 : 0.1;

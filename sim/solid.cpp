@@ -10,10 +10,34 @@
 #include "sim/solid_clamp.h"
 #include "sim/solid_consistency.h"
 #include "sim/solid_fit.h"
+#include "sim/solid_neighbors.h"
 
 namespace sim {
 
 namespace {
+
+// Which rows have particles of their own body that are held along the axes of their clamp's face within 1.6 l0.
+template <int D>
+class HeldNeighbors {
+ public:
+  HeldNeighbors(const SceneDescription<D>& scene, std::size_t count) : particles_(scene.particles) {
+    std::vector<Vector<D>> position;
+    for (std::size_t i = 0; i < count; ++i)
+      if (particles_.fixed.size() >= count && particles_.fixed[i]) row_.push_back(i), position.push_back(particles_.position[i]);
+    if (!position.empty()) near_ = points_within<D>(std::span(particles_.position).first(count), position, 1.6 * scene.spacing);
+  }
+  bool beside(std::size_t i) const {
+    if (row_.empty()) return false;
+    for (const std::int32_t k : near_.of(i))
+      if (particles_.body[row_[k]] == particles_.body[i] && (particles_.fixed[row_[k]] & particles_.clamp_axes[i])) return true;
+    return false;
+  }
+
+ private:
+  const InitialParticles<D>& particles_;
+  std::vector<std::size_t> row_;
+  NeighborTable near_;
+};
 
 template <int D>
 void copy_rows(const SceneDescription<D>& scene, SolidElasticity<D>& solid) {
@@ -31,6 +55,7 @@ void copy_rows(const SceneDescription<D>& scene, SolidElasticity<D>& solid) {
   optional(particles.body, solid.body, std::int32_t{0});
   optional(particles.surface_area, solid.surface_area, Vector<D>(Vector<D>::Zero()));
   optional(particles.depth, solid.depth, 0.0);
+  const HeldNeighbors<D> held(scene, n);
   for (std::size_t i = 0; i < n; ++i) {
     const Body& body = scene.bodies[solid.body[i]];
     const double scale = particles.stiffness_scale.size() >= n ? particles.stiffness_scale[i] : 1;
@@ -42,8 +67,9 @@ void copy_rows(const SceneDescription<D>& scene, SolidElasticity<D>& solid) {
       throw std::invalid_argument("elastic body '" + body.name + "': " + error.what());
     }
     solid.mass.push_back(body.elastic.density * solid.volume[i]);
-    // A clamp's face that does not run along cell faces leaves the particle next to it more or less than its cell to stand for.
-    if (particles.clamp_axes.size() >= n && (particles.clamp_axes[i] & ~particles.fixed[i]) &&
+    // A clamp's face that does not run along cell faces leaves the particle next to it more or less than its cell to stand for. Where the
+    // body ends at the face (a roller under it: nothing of the body is held inside) its cells fill it already.
+    if (particles.clamp_axes.size() >= n && (particles.clamp_axes[i] & ~particles.fixed[i]) && held.beside(i) &&
         particles.clamp_offset[i].norm() < 1.001 * scene.spacing) {
       const double part = std::clamp(particles.clamp_offset[i].norm() / scene.spacing + 0.5, 0.5, 1.5);
       solid.volume[i] *= part;

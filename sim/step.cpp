@@ -8,6 +8,7 @@
 #include "sim/number_density.h"
 #include "sim/operators.h"
 #include "sim/ordering.h"
+#include "sim/paper_step.h"
 #include "sim/parallel.h"
 #include "sim/ports.h"
 #include "sim/pressure.h"
@@ -149,6 +150,7 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
 template <int D>
 void step_dry(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
   const StageClock clock(work.stage_seconds, Stage::elastic);
+  if (scene.description.scheme.name == Scheme::paper) return step_paper_solids(scene, state, work, dt, report);
   if (scene.solids) {
     report.elastic_substeps = predict_solids(scene, state, work, dt);
     state.ledger.elastic_substeps += report.elastic_substeps;
