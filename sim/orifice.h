@@ -16,8 +16,8 @@ struct OrificeArea {
 // Geometric orifice area, as planimetry in short-axis view measures it: what is seen through, along the valve's axis, between the leaflets.
 // The leaflets' triangles, thickened by half_thickness (half the tissue's thickness), are projected along the axis on a raster of
 // `resolution` m. The region is the lumen as the attachments see it: within r(theta) of the held rows (commissure_radius where there are
-// none). What stays uncovered is open, but for gaps narrower than 2 half_contact: the model lets leaflets touch at that distance of their
-// mid-surfaces, so such gaps are closed (morphological opening of the uncovered region with a disc of half_contact - half_thickness).
+// none). What stays uncovered is open, but for gaps narrower than 2 half_contact: no particle of blood fits
+// through, so such gaps are closed (morphological opening of the uncovered region with a disc of half_contact - half_thickness).
 OrificeArea geometric_orifice_area(const ValveSheet& sheet, std::span<const Eigen::Vector3d> position, double half_thickness,
                                    double half_contact, double resolution = 1e-4);
 

@@ -36,7 +36,8 @@ struct ValveSheet {
     Eigen::Vector3d outward = Eigen::Vector3d::Zero();  // unit, across the axis towards the leaflet's middle
   };
   std::vector<Leaflet> leaflets;
-  double contact_distance() const { return 0.8 * spacing; }  // between mid-surfaces of leaflets that touch
+  // m between mid-surfaces; nearer leaflets are closed: they touch at half a spacing, and no blood fits between.
+  double contact_distance() const { return 0.8 * spacing; }
   std::size_t size() const { return rest.size(); }
 };
 
