@@ -367,14 +367,25 @@ struct Builder {
 
 }  // namespace
 
+std::shared_ptr<const CaseParticles> place_case(const SceneFile& scene) {
+  return std::make_shared<const CaseParticles>(scene.patient ? place_patient(scene) : place_bodies(scene));
+}
+
 template <int D>
-BuiltCase<D> build_case(const SceneFile& scene) {
-  Builder<D> builder{scene, scene.patient ? place_patient(scene) : place_bodies(scene), {}, {}};
+BuiltCase<D> build_case(const SceneFile& scene, const CaseParticles& placed) {
+  Builder<D> builder{scene, placed, {}, {}};
   builder.build();
   return std::move(builder.result);
 }
 
+template <int D>
+BuiltCase<D> build_case(const SceneFile& scene) {
+  return build_case<D>(scene, *place_case(scene));
+}
+
 template BuiltCase<2> build_case<2>(const SceneFile&);
 template BuiltCase<3> build_case<3>(const SceneFile&);
+template BuiltCase<2> build_case<2>(const SceneFile&, const CaseParticles&);
+template BuiltCase<3> build_case<3>(const SceneFile&, const CaseParticles&);
 
 }  // namespace app

@@ -9,6 +9,7 @@
 #include "app/progress.h"
 #include "app/run_case.h"
 #include "app/run_report.h"
+#include "app/valve_moments.h"
 
 namespace app {
 namespace {
@@ -20,13 +21,11 @@ struct Options {
   bool resume = false, quiet = false, json = false;
 };
 
-// Times of the frames with the largest and, later, the smallest orifice.
+// Times of the open valve and of the closed one at rest.
 std::pair<double, double> open_and_closed(const sim::RunReader& run) {
-  const std::vector<double> time = run.column("time"), area = run.column("orifice_area");
-  if (area.empty()) return {0.3 * time.back(), time.back()};
-  const auto open = std::max_element(area.begin(), area.end());
-  const auto closed = std::min_element(open, area.end());
-  return {time[static_cast<std::size_t>(open - area.begin())], time[static_cast<std::size_t>(closed - area.begin())]};
+  if (const std::optional<ValveMoments> moments = valve_moments(run)) return {moments->open, moments->closed};
+  const std::vector<double> time = run.column("time");
+  return {0.3 * time.back(), time.back()};
 }
 
 MovieJob job_for(const std::filesystem::path& run, const std::filesystem::path& output, const Options& options) {

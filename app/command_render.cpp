@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "app/measure_render.h"
 #include "app/movie.h"
 #include "app/progress.h"
 
@@ -16,9 +17,11 @@ namespace {
 
 struct Options {
   std::vector<std::string> runs, views, fields, ranges, labels;
-  std::string output, size = "1920x1080", map, units = "kPa";
+  std::string output, size = "1920x1080", map, units = "kPa", path, caption;
   double fps = 25, slow = 0, hold = 0, time = 0;
   int quality = 0;
+  bool open = false, closed = false, difference = false;
+  int measure = 0;
   bool balls = false, walls = false, quiet = false, json = false;
   bool time_given = false, slow_given = false;
 };
@@ -45,7 +48,7 @@ MovieJob job_of(const Options& options) {
   job.output = options.output;
   if (options.output.empty()) {
     job.output = job.runs.front();
-    job.output.replace_extension(options.time_given ? ".png" : ".mp4");
+    job.output.replace_extension(options.time_given || options.open || options.closed ? ".png" : ".mp4");
   }
   job.choice.views = options.views;
   job.choice.fields = options.fields;
@@ -61,6 +64,9 @@ MovieJob job_of(const Options& options) {
   if (options.slow_given) job.slow = options.slow;
   job.hold = options.hold;
   if (options.time_given) job.time = options.time;
+  job.open = options.open, job.closed = options.closed, job.difference = options.difference;
+  if (!options.path.empty()) job.path = read_camera_path(options.path);
+  job.caption = options.caption;
   job.quality = options.quality;
   return job;
 }
@@ -74,8 +80,23 @@ void print_progress(std::size_t done, std::size_t all, double seconds) {
   std::fflush(stderr);
 }
 
+int measure(const Options& options, const MovieJob& job) {
+  const RenderSpeed speed = measure_render(job, options.measure);
+  if (options.json) {
+    std::printf("%s\n", render_speed_json(speed).dump(2).c_str());
+    return 0;
+  }
+  std::printf("%zu pictures of %d x %d, %zu particles, %zu panels, %s\n", speed.pictures, job.width, job.height, speed.particles,
+              speed.panels, speed.driver.c_str());
+  std::printf("%-34s %8.1f ms\n", "reading a frame of the run", 1e3 * speed.read);
+  std::printf("%-34s %8.1f ms  (%.1f a second)\n", "drawing it, everything shown", 1e3 * speed.full, 1 / speed.full);
+  std::printf("%-34s %8.1f ms  (%.1f a second)\n", "drawing it with less detail", 1e3 * speed.draft, 1 / speed.draft);
+  return 0;
+}
+
 int render_runs(const Options& options) {
   MovieJob job = job_of(options);
+  if (options.measure > 0) return measure(options, job);
   job.stop = &stop_on_signal();
   if (!options.quiet) job.progress = print_progress;
   const MovieResult result = make_movie(job);
@@ -105,7 +126,8 @@ void add_render_command(CLI::App& program, int& exit_code) {
   CLI::App* command = program.add_subcommand("render", "movies and pictures of runs, without a display");
   command->add_option("RUN", options->runs, "run files (.h5); several are shown side by side at the same time with the same scales")
       ->required();
-  command->add_option("-o,--output", options->output, "movie.mp4, picture.png, or frames/%04d.png (default: the run's name with .mp4)");
+  command->add_option("-o,--output", options->output,
+                      "movie.mp4, preview.webp, preview.gif, picture.png, or frames/%04d.png (default: the run's name with .mp4)");
   command
       ->add_option(
           "--view", options->views,
@@ -118,8 +140,16 @@ void add_render_command(CLI::App& program, int& exit_code) {
   command->add_option("--fps", options->fps, "movie frames a second")->capture_default_str();
   CLI::Option* slow =
       command->add_option("--slow", options->slow, "movie seconds per simulated second (default: each frame of the run once)");
-  command->add_option("--hold", options->hold, "seconds to rest where the valve is widest open and where it closes");
+  command->add_option("--hold", options->hold, "seconds to rest where the valve is widest open and where it is closed and at rest");
   CLI::Option* time = command->add_option("--time", options->time, "the simulated time of one picture, s (default: the last)");
+  command->add_flag("--open", options->open, "one picture of the moment when the valve is widest open");
+  command->add_flag("--closed", options->closed, "one picture of a moment when the valve is closed and at rest");
+  command->add_option("--path", options->path, "one picture whose camera moves: VIEW@SECONDS,..., as in from_aorta@0,long_axis@0.4");
+  command->add_flag("--difference", options->difference,
+                    "of two runs, also what the second's stress (or other field) exceeds the first's by");
+  command->add_option("--caption", options->caption, "words at the bottom right, before the standing ones");
+  command->add_option("--measure", options->measure, "draw so many pictures, write none, say how long one takes")
+      ->check(CLI::Range(1, 1000));
   command->add_option("--range", options->ranges, "FIELD=LOW:HIGH in SI units, as in pressure=0:20000 (default: the run's own range)");
   command->add_option("--map", options->map, "colour map: viridis, inferno, plasma, cividis, diverging");
   command->add_option("--units", options->units, "of the blood's pressure")

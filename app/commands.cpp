@@ -22,6 +22,7 @@ int run_program(int argc, char** argv) {
   add_run_command(program, exit_code);
   add_replay_command(program, exit_code);
   add_render_command(program, exit_code);
+  add_view_command(program, exit_code);
   add_sweep_command(program, exit_code);
   add_accuracy_command(program, exit_code);
   add_validate_command(program, exit_code);

@@ -13,6 +13,7 @@ void add_import_command(CLI::App& program, int& exit_code);
 void add_explain_command(CLI::App& program, int& exit_code);
 void add_run_command(CLI::App& program, int& exit_code);
 void add_replay_command(CLI::App& program, int& exit_code);
+void add_view_command(CLI::App& program, int& exit_code);
 void add_sweep_command(CLI::App& program, int& exit_code);
 void add_accuracy_command(CLI::App& program, int& exit_code);
 void add_validate_command(CLI::App& program, int& exit_code);

@@ -7,15 +7,15 @@
 #include <set>
 #include <stdexcept>
 
-#include "geometry/triangle_tree.h"
 #include "render/skin.h"
 
 namespace app {
 namespace {
 
-constexpr float drawn_radius = 0.62f;     // of the spacing, in 3-D: neighbours overlap, so that a body shows no gaps
-constexpr float flat_radius = 0.71f;      // likewise for the discs of 2-D
-constexpr float contact_distance = 0.8f;  // of the spacing: two leaflets in contact are this far apart (docs/), and drawn as touching
+constexpr float drawn_radius = 0.62f;       // of the spacing, in 3-D: neighbours overlap, so that a body shows no gaps
+constexpr float flat_radius = 0.71f;        // likewise for the discs of 2-D
+constexpr std::size_t finely_drawn = 1500;  // triangles: a leaflet of fewer is smoothed by two levels, else one
+constexpr float contact_distance = 0.8f;    // of the spacing: two leaflets in contact are this far apart (docs/), and drawn as touching
 
 Eigen::Vector3f point(const std::array<double, 3>& p) {
   return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
@@ -23,18 +23,23 @@ Eigen::Vector3f point(const std::array<double, 3>& p) {
 
 sim::Kind kind_of(const sim::RunFrame& frame, std::size_t row) { return static_cast<sim::Kind>(frame.kind[row]); }
 
-// What moves over the run, from the first frame, the last and some between.
-render::Bounds bounds_over(const sim::RunReader& run) {
-  render::Bounds bounds;
+// The first frame, the last and some between.
+std::vector<sim::RunFrame> frames_over(const sim::RunReader& run) {
   const std::size_t count = run.frame_count(), looked_at = std::min<std::size_t>(count, 8);
-  const auto radius = static_cast<float>(flat_radius * run.header().spacing);
-  for (std::size_t i = 0; i < looked_at; ++i) {
-    const sim::RunFrame frame = run.frame(looked_at > 1 ? i * (count - 1) / (looked_at - 1) : 0);
+  std::vector<sim::RunFrame> frames;
+  for (std::size_t i = 0; i < looked_at; ++i) frames.push_back(run.frame(looked_at > 1 ? i * (count - 1) / (looked_at - 1) : 0));
+  return frames;
+}
+
+// What moves over the run.
+render::Bounds bounds_over(const std::vector<sim::RunFrame>& frames, double spacing) {
+  render::Bounds bounds;
+  const auto radius = static_cast<float>(flat_radius * spacing);
+  for (const sim::RunFrame& frame : frames)
     for (std::size_t row = 0; row < frame.size(); ++row) {
       const Eigen::Vector3f p = point(frame.position[row]);
       if (kind_of(frame, row) != sim::Kind::wall && kind_of(frame, row) != sim::Kind::port && p.allFinite()) bounds.add(p, radius);
     }
-  }
   return bounds;
 }
 
@@ -46,31 +51,48 @@ render::Surface root_part(const render::Surface& lumen, const sim::ValveFrame& v
                           {annulus + (height + 0.6f * radius) * axis, axis});
 }
 
-// The leaflets' triangles without those that lie wholly behind the wall, where a leaflet is anchored. A particle lies behind the wall where
-// the ray to it from the valve's axis meets the wall half a spacing or more before it.
-std::vector<sim::RunHeader::ShellInfo> visible_shells(const sim::RunHeader& header, const std::vector<std::array<double, 3>>& start) {
+// Whether each particle of a body stays exactly where it was in all `seen` frames: it is held (or nothing has moved yet).
+std::vector<bool> held_rows(const sim::RunHeader::BodyInfo& body, const std::vector<sim::RunFrame>& seen) {
+  std::vector<bool> held(static_cast<std::size_t>(body.count), true);
+  for (const sim::RunFrame& frame : seen)
+    for (std::int64_t row = 0; row < body.count; ++row)
+      if (frame.position.at(body.first + row) != seen.front().position.at(body.first + row)) held[static_cast<std::size_t>(row)] = false;
+  return held;
+}
+
+// The leaflets' triangles without those that are held at all three corners: there a leaflet is anchored in the wall, and what is drawn
+// beyond the attachment would not be tissue.
+std::vector<sim::RunHeader::ShellInfo> visible_shells(const sim::RunHeader& header, const std::vector<sim::RunFrame>& seen) {
   std::vector<sim::RunHeader::ShellInfo> shells = header.shells;
-  if (!header.valve || header.lumen.triangles.empty() || header.dimension == 2) return shells;
-  geometry::TriangleMesh wall;
-  for (const auto& v : header.lumen.vertices) wall.vertices.emplace_back(v[0], v[1], v[2]);
-  wall.triangles = header.lumen.triangles;
-  const geometry::TriangleTree tree(wall);
-  const Eigen::Vector3d axis = header.valve->axis;
-  const auto behind = [&](std::int64_t row) {
-    const auto& p = start.at(static_cast<std::size_t>(row));
-    const Eigen::Vector3d from = Eigen::Vector3d(p[0], p[1], p[2]) - header.valve->annulus_center;
-    const Eigen::Vector3d across = from - axis * axis.dot(from);
-    const double distance = across.norm();
-    return distance > 0 &&
-           tree.first_hit(header.valve->annulus_center + axis * axis.dot(from), across / distance) < distance - 0.5 * header.spacing;
-  };
+  if (!header.valve || header.dimension == 2) return shells;
   for (sim::RunHeader::ShellInfo& shell : shells) {
     const sim::RunHeader::BodyInfo& body = header.bodies.at(static_cast<std::size_t>(shell.body));
-    std::vector<bool> hidden;
-    for (std::int64_t row = body.first; row < body.first + body.count; ++row) hidden.push_back(behind(row));
-    std::erase_if(shell.elements, [&](const auto& t) { return hidden.at(t[0]) && hidden.at(t[1]) && hidden.at(t[2]); });
+    const std::vector<bool> held = held_rows(body, seen);
+    const auto anchored = [&](const auto& t) { return held.at(t[0]) && held.at(t[1]) && held.at(t[2]); };
+    if (std::all_of(shell.elements.begin(), shell.elements.end(), anchored)) continue;  // nothing has moved yet
+    std::erase_if(shell.elements, anchored);
   }
   return shells;
+}
+
+// Per shell and particle: the moving particles next to a held one that is drawn; empty for all others. At a held particle the stress is
+// that of the clamp, which a sheet of particles does not resolve: it shows the mean of these.
+std::vector<std::vector<std::vector<std::int32_t>>> moving_neighbors(const sim::RunHeader& header,
+                                                                     const std::vector<sim::RunHeader::ShellInfo>& shells,
+                                                                     const std::vector<sim::RunFrame>& seen) {
+  std::vector<std::vector<std::vector<std::int32_t>>> all;
+  for (const sim::RunHeader::ShellInfo& shell : shells) {
+    const sim::RunHeader::BodyInfo& body = header.bodies.at(static_cast<std::size_t>(shell.body));
+    all.emplace_back(static_cast<std::size_t>(body.count));
+    if (!header.valve || header.dimension == 2) continue;
+    const std::vector<bool> held = held_rows(body, seen);
+    for (const auto& triangle : shell.elements)
+      for (const std::int32_t a : triangle)
+        for (const std::int32_t b : triangle)
+          if (held.at(static_cast<std::size_t>(a)) && !held.at(static_cast<std::size_t>(b)))
+            all.back()[static_cast<std::size_t>(a)].push_back(b);
+  }
+  return all;
 }
 
 }  // namespace
@@ -116,9 +138,11 @@ FrameMaker::FrameMaker(const sim::RunReader& run, PictureChoice choice, const Fi
   if (run.frame_count() == 0) throw std::invalid_argument("the run '" + run.header().title + "' holds no finished frame yet");
   for (const auto& [field, range] : choice_.ranges) ranges_[field] = range;
   for (std::size_t i = 0; i < run.frame_count(); ++i) times_.push_back(run.frame_time(i));
-  start_ = run.frame(0).position;
-  bounds_ = bounds_over(run);
-  shells_ = visible_shells(run.header(), start_);
+  const std::vector<sim::RunFrame> seen = frames_over(run);
+  start_ = seen.front().position;
+  bounds_ = bounds_over(seen, run.header().spacing);
+  shells_ = visible_shells(run.header(), seen);
+  stand_ins_ = moving_neighbors(run.header(), shells_, seen);
   series_ = run.series();
   plots_ = make_plots(run.header(), series_);
   const sim::RunHeader& header = run.header();
@@ -162,7 +186,8 @@ void FrameMaker::add_particles(render::Frame& frame, const sim::RunFrame& state)
 void FrameMaker::add_shells(render::Frame& frame, const sim::RunFrame& state) const {
   const sim::RunHeader& header = run_.header();
   frame.surfaces = {lumen_, root_};
-  for (const auto& shell : shells_) {
+  for (std::size_t number = 0; number < shells_.size(); ++number) {
+    const sim::RunHeader::ShellInfo& shell = shells_[number];
     const sim::RunHeader::BodyInfo& body = header.bodies.at(static_cast<std::size_t>(shell.body));
     const auto value = [&](std::size_t k, std::int64_t row) {
       return field_value(solid_fields[k], state, static_cast<std::size_t>(row), start_);
@@ -182,11 +207,21 @@ void FrameMaker::add_shells(render::Frame& frame, const sim::RunFrame& state) co
     surface.name = body.name;
     surface.triangles = shell.elements;
     surface.thickness = static_cast<float>(std::max(body.thickness, contact_distance * header.spacing));
-    surface.smoothing = 1;
+    surface.smoothing = surface.triangles.size() < finely_drawn ? 2 : 1;
+    surface.averaging = surface.fairing = 2;
     surface.fields.resize(solid_fields.size());
     for (std::int64_t row = body.first; row < body.first + body.count; ++row) {
       surface.vertices.push_back(point(state.position.at(row)));
       for (std::size_t k = 0; k < solid_fields.size(); ++k) surface.fields[k].push_back(value(k, row));
+    }
+    for (std::size_t i = 0; i < stand_ins_[number].size(); ++i) {
+      const std::vector<std::int32_t>& others = stand_ins_[number][i];
+      if (others.empty()) continue;
+      for (const std::string& field : {std::string("stress"), std::string("principal_stress")}) {
+        float sum = 0;
+        for (const std::int32_t other : others) sum += value(static_cast<std::size_t>(field_index(field)), body.first + other);
+        surface.fields[static_cast<std::size_t>(field_index(field))][i] = sum / static_cast<float>(others.size());
+      }
     }
     frame.surfaces.push_back(std::move(surface));
   }
@@ -206,6 +241,22 @@ void FrameMaker::add_words(render::Frame& frame, const sim::RunFrame& state, std
   if (warnings_.size() > shown) frame.warnings.back() += " (and " + std::to_string(warnings_.size() - shown) + " more: cusp info)";
 }
 
+// The largest value of each solids' field among what can be seen, as computed: pictures smooth what they colour.
+void FrameMaker::add_highest(render::Frame& frame) const {
+  for (std::size_t k = 0; k < solid_fields.size(); ++k) {
+    std::optional<double>& highest = frame.scales[static_cast<std::size_t>(scale_slot(solid_fields[k]))].highest;
+    const auto add = [&](float value) {
+      if (std::isfinite(value)) highest = std::max<double>(highest.value_or(value), value);
+    };
+    for (std::size_t s = first_leaflet; s < frame.surfaces.size(); ++s)
+      for (const auto& triangle : frame.surfaces[s].triangles)
+        for (const std::int32_t vertex : triangle) add(frame.surfaces[s].fields[k][static_cast<std::size_t>(vertex)]);
+    for (const float value : frame.particles[solid_set].fields[k]) add(value);
+    for (const render::Line& line : frame.lines)
+      for (const float value : line.fields[k]) add(value);
+  }
+}
+
 render::Frame FrameMaker::make(std::size_t index) const {
   const sim::RunFrame state = run_.frame(index);
   render::Frame frame;
@@ -218,8 +269,13 @@ render::Frame FrameMaker::make(std::size_t index) const {
   add_particles(frame, state);
   add_shells(frame, state);
   add_words(frame, state, index);
-  for (const View& view : views_) frame.panels.push_back(make_panel(view, frame, run_.header(), choice_, bounds_, toward_leaflet_));
+  add_highest(frame);
+  for (const View& view : views_) frame.panels.push_back(panel(view, frame));
   return frame;
+}
+
+render::Panel FrameMaker::panel(const View& view, const render::Frame& frame) const {
+  return make_panel(view, frame, run_.header(), choice_, bounds_, toward_leaflet_);
 }
 
 }  // namespace app

@@ -39,11 +39,16 @@ class FrameMaker {
   // `ranges`: of all runs that are shown together (field_ranges).
   FrameMaker(const sim::RunReader& run, PictureChoice choice, const FieldRanges& ranges, bool alone = true);
   render::Frame make(std::size_t index) const;
+  // The panel of any view and field of the run, for a frame that make() returned.
+  render::Panel panel(const View& view, const render::Frame& frame) const;
   const std::vector<double>& times() const { return times_; }
+  // Places of the first frame, m, one a row.
+  const std::vector<std::array<double, 3>>& start() const { return start_; }
 
  private:
   void add_particles(render::Frame& frame, const sim::RunFrame& state) const;
   void add_shells(render::Frame& frame, const sim::RunFrame& state) const;
+  void add_highest(render::Frame& frame) const;
   void add_words(render::Frame& frame, const sim::RunFrame& state, std::size_t index) const;
 
   const sim::RunReader& run_;
@@ -51,11 +56,12 @@ class FrameMaker {
   FieldRanges ranges_;
   std::vector<View> views_;
   std::vector<double> times_;
-  std::vector<std::array<double, 3>> start_;                   // positions of the first frame
-  render::Bounds bounds_;                                      // of all that moves, over the run
-  Eigen::Vector3f toward_leaflet_ = Eigen::Vector3f::UnitX();  // unit, across the valve's axis to the first leaflet's middle
-  std::vector<sim::RunHeader::ShellInfo> shells_;              // without what lies within the wall
-  render::Surface lumen_, root_;                               // the whole vessel, and its part about the valve
+  std::vector<std::array<double, 3>> start_;                       // positions of the first frame
+  render::Bounds bounds_;                                          // of all that moves, over the run
+  Eigen::Vector3f toward_leaflet_ = Eigen::Vector3f::UnitX();      // unit, across the valve's axis to the first leaflet's middle
+  std::vector<sim::RunHeader::ShellInfo> shells_;                  // without what lies within the wall
+  std::vector<std::vector<std::vector<std::int32_t>>> stand_ins_;  // per shell and particle: whose stress a held one shows; mostly empty
+  render::Surface lumen_, root_;                                   // the whole vessel, and its part about the valve
   std::vector<render::Plot> plots_;
   std::vector<std::vector<double>> series_;
   std::vector<std::string> warnings_;

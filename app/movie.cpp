@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <regex>
+#include <sstream>
 #include <stdexcept>
 
+#include "app/difference.h"
+#include "app/valve_moments.h"
+#include "render/camera_motion.h"
 #include "render/video.h"
 
 namespace app {
@@ -47,6 +52,36 @@ std::string numbered_path(const std::string& pattern, std::size_t number) {
   return found.prefix().str() + digits + found.suffix().str();
 }
 
+std::vector<CameraKey> read_camera_path(const std::string& text) {
+  std::vector<CameraKey> path;
+  std::stringstream keys(text);
+  for (std::string key; std::getline(keys, key, ',');) {
+    const auto at = key.find('@');
+    char rest = 0;
+    double time = 0;
+    if (at == std::string::npos || at == 0 || std::sscanf(key.c_str() + at + 1, "%lf%c", &time, &rest) != 1)
+      throw std::invalid_argument("--path: '" + key + "' is no step of a path; write VIEW@SECONDS, as in from_aorta@0,long_axis@0.4");
+    if (!path.empty() && time <= path.back().time) throw std::invalid_argument("--path: the times do not increase at '" + key + "'");
+    path.push_back({key.substr(0, at), time});
+  }
+  if (path.empty()) throw std::invalid_argument("--path: is empty; write VIEW@SECONDS, as in from_aorta@0,long_axis@0.4");
+  return path;
+}
+
+render::Panel panel_on_path(const std::vector<render::Panel>& panels, const std::vector<CameraKey>& path, double time) {
+  if (panels.size() != path.size())
+    throw std::invalid_argument("--path: goes through views of one picture each, so not through pair or standard");
+  std::size_t next = 0;
+  while (next < path.size() && path[next].time <= time) ++next;
+  if (next == 0) return panels.front();
+  if (next == path.size()) return panels.back();
+  const double part = render::eased((time - path[next - 1].time) / (path[next].time - path[next - 1].time));
+  render::Panel panel = panels[part < 0.5 ? next - 1 : next];
+  panel.camera = render::between(panels[next - 1].camera, panels[next].camera, part);
+  if (part > 0 && path[next - 1].view != path[next].view) panel.clip.reset();
+  return panel;
+}
+
 namespace {
 
 enum class Output { movie, sequence, picture };
@@ -54,10 +89,11 @@ enum class Output { movie, sequence, picture };
 Output output_kind(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (ending == ".mp4") return Output::movie;
+  if (ending == ".mp4" || ending == ".webp" || ending == ".gif") return Output::movie;
   if (ending == ".png") return path.string().find('%') != std::string::npos ? Output::sequence : Output::picture;
-  throw std::invalid_argument("-o '" + path.string() +
-                              "': use a name that ends in .mp4 (a movie), .png (one picture) or %04d.png (a sequence)");
+  throw std::invalid_argument(
+      "-o '" + path.string() +
+      "': use a name that ends in .mp4 (a movie), .webp or .gif (a preview), .png (one picture) or %04d.png (a sequence)");
 }
 
 void check_job(const MovieJob& job, Output kind) {
@@ -70,17 +106,26 @@ void check_job(const MovieJob& job, Output kind) {
   if (job.width < 160 || job.height < 120 || job.width > 16384 || job.height > 16384)
     throw std::invalid_argument("--size: give 160x120 to 16384x16384 pixels");
   if (!job.labels.empty() && job.labels.size() != job.runs.size()) throw std::invalid_argument("--label: give one for each run");
-  if (job.time && kind != Output::picture) throw std::invalid_argument("--time: is for one picture; name it with -o PICTURE.png");
+  if ((job.time || job.open || job.closed) && kind != Output::picture)
+    throw std::invalid_argument("--time, --open, --closed: are for one picture; name it with -o PICTURE.png");
+  if (static_cast<int>(job.time.has_value()) + job.open + job.closed > 1)
+    throw std::invalid_argument("--time, --open, --closed: give one of them");
+  if (job.difference && job.runs.size() != 2) throw std::invalid_argument("--difference: is between two runs; give two");
 }
 
-// Where a valve is widest open, and the first moment after it when its opening is at its smallest.
+// Where a valve is widest open, and where it is closed and at rest.
 std::vector<std::size_t> states_to_hold(const sim::RunReader& run, const std::vector<double>& times) {
-  const std::vector<double> area = run.column("orifice_area"), when = run.column("time");
-  if (area.empty() || area.size() != when.size()) return {};
-  const auto open = std::max_element(area.begin(), area.end());
-  const auto closed = std::min_element(open, area.end());
-  return {nearest_frame(times, when[static_cast<std::size_t>(open - area.begin())]),
-          nearest_frame(times, when[static_cast<std::size_t>(closed - area.begin())])};
+  const std::optional<ValveMoments> moments = valve_moments(run);
+  if (!moments) return {};
+  return {nearest_frame(times, moments->open), nearest_frame(times, moments->closed)};
+}
+
+std::size_t frame_of_picture(const MovieJob& job, const sim::RunReader& run, const std::vector<double>& times) {
+  if (!job.open && !job.closed) return job.time ? nearest_frame(times, *job.time) : times.size() - 1;
+  const std::optional<ValveMoments> moments = valve_moments(run);
+  if (!moments)
+    throw std::invalid_argument(job.runs.front().string() + ": has no valve that opens; give --time instead of --open or --closed");
+  return nearest_frame(times, job.open ? moments->open : moments->closed);
 }
 
 // The first frame's plots, with the curves of the others in those where each run has a single one.
@@ -106,6 +151,9 @@ void compare_plots(std::vector<render::Frame>& frames) {
 struct Runs {
   std::vector<sim::RunReader> readers;
   std::vector<FrameMaker> makers;
+  std::vector<CameraKey> path;
+  std::vector<double> extent;  // of the differences; empty: none are shown
+  std::string caption;
 
   explicit Runs(const MovieJob& job) {
     for (const auto& path : job.runs) {
@@ -123,23 +171,56 @@ struct Runs {
       PictureChoice choice = job.choice;
       if (readers.size() > 1) choice.label.clear();
       if (!job.labels.empty()) choice.label = job.labels[i];
+      if (!job.path.empty()) choice.views.clear();
+      for (const CameraKey& key : job.path) choice.views.push_back(key.view);
       makers.emplace_back(readers[i], choice, ranges, readers.size() == 1);
     }
+    path = job.path;
+    caption = job.caption;
+    if (job.difference) find_extent();
+  }
+
+  // The sizes of the differences over both runs, from frames spread over the first.
+  void find_extent() {
+    constexpr std::size_t sample = 12;
+    const std::size_t count = makers[0].times().size();
+    for (std::size_t k = 0; k < std::min(sample, count); ++k) {
+      const std::size_t index = count > 1 ? k * (count - 1) / std::max<std::size_t>(std::min(sample, count) - 1, 1) : 0;
+      const std::vector<double> here = difference_extent(makers[0].make(index), makers[1].make(beside(1, index)));
+      extent.resize(here.size(), 0);
+      for (std::size_t f = 0; f < here.size(); ++f) extent[f] = std::max(extent[f], here[f]);
+    }
+  }
+
+  // The frame of another run at the time of the first run's.
+  std::size_t beside(std::size_t run, std::size_t index) const { return nearest_frame(makers[run].times(), makers.front().times()[index]); }
+
+  render::Frame one(std::size_t run, std::size_t index) const {
+    render::Frame frame = makers[run].make(index);
+    if (!path.empty()) frame.panels = {panel_on_path(frame.panels, path, makers[run].times()[index])};
+    if (!caption.empty()) frame.caption = caption + (frame.caption.empty() ? "" : "  ·  " + frame.caption);
+    return frame;
   }
 
   // The frame of the first run, with those of the others at the same time beside it.
   render::Frame frame(std::size_t index) const {
-    if (makers.size() == 1) return makers.front().make(index);
+    if (makers.size() == 1) return one(0, index);
     std::vector<render::Frame> frames;
-    for (const FrameMaker& maker : makers) {
-      frames.push_back(maker.make(nearest_frame(maker.times(), makers.front().times()[index])));
-      render::Frame& frame = frames.back();
+    for (std::size_t run = 0; run < makers.size(); ++run) frames.push_back(one(run, beside(run, index)));
+    std::optional<render::Frame> difference;
+    if (!extent.empty()) difference = difference_frame(frames[0], frames[1], extent);
+    for (render::Frame& frame : frames) {
       for (render::Panel& panel : frame.panels) {
         panel.title = frame.title + (panel.title.empty() ? "" : ": " + panel.title);
         panel.note = frame.subtitle;
       }
       frame.subtitle.clear();  // it stands in the panels, and so do the numbers that differ: in the plots
       frame.readouts.clear();
+    }
+    if (difference) {
+      for (render::Panel& panel : difference->panels) panel.title = "Difference: " + panel.title;
+      difference->title.clear();
+      frames.push_back(std::move(*difference));
     }
     compare_plots(frames);
     return render::side_by_side(frames);
@@ -157,7 +238,7 @@ MovieResult make_movie(const MovieJob& job) {
   const std::vector<double>& times = runs.makers.front().times();
   std::vector<std::size_t> schedule;
   if (kind == Output::picture)
-    schedule = {job.time ? nearest_frame(times, *job.time) : times.size() - 1};
+    schedule = {frame_of_picture(job, runs.readers.front(), times)};
   else
     schedule = movie_schedule(times, job.fps, job.slow, job.hold,
                               job.hold > 0 ? states_to_hold(runs.readers.front(), times) : std::vector<std::size_t>{});

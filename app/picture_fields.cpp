@@ -49,11 +49,13 @@ double percentile(std::vector<float>& values, double part) {
 // A range below this is round-off of something at rest: it is not spread over the colours. SI
 double least_span(const std::string& field) { return field == "displacement" ? 1e-9 : field == "speed" ? 1e-6 : 1e-3; }
 
-// Ends rounded outwards to half the power of ten below the span, so that the colour bar ends at a number that can be read.
+// Ends rounded outwards to a step of 1, 2, 2.5 or 5 times a power of ten, of which the range holds four to ten: the colour bar ends at
+// numbers that can be read.
 Range2 rounded(Range2 range) {
   const double span = range[1] - range[0];
   if (!(span > 0)) return {range[0], range[0] + std::max(1e-6 * std::abs(range[0]), 1e-12)};
-  const double step = std::pow(10.0, std::floor(std::log10(span))) / 2;
+  const double rough = span / 7, power = std::pow(10.0, std::floor(std::log10(rough))), part = rough / power;
+  const double step = power * (part <= 1 ? 1 : part <= 2 ? 2 : part <= 2.5 ? 2.5 : part <= 5 ? 5 : 10);
   return {std::floor(range[0] / step + 1e-9) * step, std::ceil(range[1] / step - 1e-9) * step};
 }
 
@@ -62,22 +64,35 @@ bool carries(const std::string& field, std::uint8_t kind) {
   return is_fluid_field(field) ? k == sim::Kind::fluid : k == sim::Kind::elastic || k == sim::Kind::shell;
 }
 
-void widen(FieldRanges& ranges, const sim::RunFrame& frame, const std::vector<std::array<double, 3>>& start) {
+// The percentiles of one frame, added to those of the run's other frames.
+using FramePercentiles = std::map<std::string, std::array<std::vector<float>, 2>>;
+
+void gather(FramePercentiles& found, const sim::RunFrame& frame, const std::vector<std::array<double, 3>>& start, bool valve) {
   for (const auto* list : {&fluid_fields, &solid_fields})
     for (const std::string& field : *list) {
       std::vector<float> values;
-      for (std::size_t row = 0; row < frame.size(); ++row)
-        if (carries(field, frame.kind[row])) {
-          const float value = field_value(field, frame, row, start);
-          if (std::isfinite(value)) values.push_back(value);
-        }
+      for (std::size_t row = 0; row < frame.size(); ++row) {
+        if (!carries(field, frame.kind[row])) continue;
+        // A leaflet's particle that has not moved at all is held within the wall, where it is not shown.
+        if (valve && !is_fluid_field(field) && row < start.size() && frame.position[row] == start[row]) continue;
+        if (const float value = field_value(field, frame, row, start); std::isfinite(value)) values.push_back(value);
+      }
       if (values.empty()) continue;
       const Percentiles part = percentiles_of(field);
-      const bool from_zero = field != "pressure" && field != "principal_stress";
-      const double low = from_zero ? 0 : percentile(values, part.low), high = percentile(values, part.high);
-      const auto [entry, fresh] = ranges.emplace(field, Range2{low, high});
-      if (!fresh) entry->second = {std::min(entry->second[0], low), std::max(entry->second[1], high)};
+      found[field][0].push_back(static_cast<float>(percentile(values, part.low)));
+      found[field][1].push_back(static_cast<float>(percentile(values, part.high)));
     }
+}
+
+// A run's range goes from frame to frame, but not to the most extreme twentieth of them: a water hammer of a few milliseconds would
+// otherwise set the scale of a whole beat. Fewer than twenty frames all count.
+void widen(FieldRanges& ranges, FramePercentiles& found) {
+  for (auto& [field, ends] : found) {
+    const bool from_zero = field != "pressure" && field != "principal_stress", all = field == "displacement" || ends[0].size() < 20;
+    const double low = from_zero ? 0 : percentile(ends[0], all ? 0 : 0.05), high = percentile(ends[1], all ? 1 : 0.95);
+    const auto [entry, fresh] = ranges.emplace(field, Range2{low, high});
+    if (!fresh) entry->second = {std::min(entry->second[0], low), std::max(entry->second[1], high)};
+  }
 }
 
 }  // namespace
@@ -88,7 +103,10 @@ FieldRanges field_ranges(const std::vector<const sim::RunReader*>& runs, std::si
     const std::size_t count = run->frame_count(), looked_at = std::min(count, std::max<std::size_t>(sample, 2));
     if (count == 0) continue;
     const auto start = run->frame(0).position;
-    for (std::size_t i = 0; i < looked_at; ++i) widen(ranges, run->frame(looked_at > 1 ? i * (count - 1) / (looked_at - 1) : 0), start);
+    FramePercentiles found;
+    for (std::size_t i = 0; i < looked_at; ++i)
+      gather(found, run->frame(looked_at > 1 ? i * (count - 1) / (looked_at - 1) : 0), start, run->header().valve.has_value());
+    widen(ranges, found);
   }
   for (auto& [field, range] : ranges) {
     if (field == "principal_stress") range[0] = std::min(range[0], 0.0);
@@ -129,7 +147,7 @@ render::ColorScale field_scale(const std::string& field, Range2 range, const std
     scale.unit = largest >= 1 ? "m" : largest >= 1e-4 ? "mm" : "µm";
     scale.factor = largest >= 1 ? 1 : largest >= 1e-4 ? 1e3 : 1e6;
   } else {
-    scale.label = field == "stress" ? "Stress (von Mises)" : "Largest principal stress";
+    scale.label = field == "stress" ? "Von Mises stress" : "Largest principal stress";
     scale.map = render::Colormap::inferno;
     pascals();
   }

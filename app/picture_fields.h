@@ -24,9 +24,10 @@ int field_index(const std::string& field);
 // The value of the field at a row, SI. `start` = positions at the first frame (for displacement).
 float field_value(const std::string& field, const sim::RunFrame& frame, std::size_t row, const std::vector<std::array<double, 3>>& start);
 
-// The range of each field over all frames of the runs (a sample of at most `sample` frames each): pressure between its 1st and 99th
-// percentile, the others from 0 to their 99.5th (speed), 99th (stress) or largest (displacement), ends rounded outwards.
-FieldRanges field_ranges(const std::vector<const sim::RunReader*>& runs, std::size_t sample = 16);
+// The range of each field over the runs (a sample of at most `sample` frames each), unsmoothed: within a frame, pressure between its 1st
+// and 99th percentile, the others from 0 to their 99.5th (speed), 99th (stress) or largest (displacement); over a run's frames the widest
+// but for the most extreme twentieth; of several runs the widest; ends rounded outwards.
+FieldRanges field_ranges(const std::vector<const sim::RunReader*>& runs, std::size_t sample = 32);
 
 // `pressure_units`: kPa, mmHg or Pa, for the blood's pressure; `map` empty = the field's own.
 render::ColorScale field_scale(const std::string& field, Range2 range, const std::string& pressure_units, const std::string& map);

@@ -32,7 +32,7 @@ sim::RunResult run_case(const SceneFile& scene_file, const RunCaseOptions& optio
   if (options.threads > 0) omp_set_num_threads(options.threads);
   const MemoryLimit memory(scene_file.limits.memory);
   sim::RunResult result;
-  with_scene(scene_file, [&](auto& built, const auto& scene) {
+  with_scene(scene_file, options, [&](auto& built, const auto& scene) {
     sim::RunSetup setup;
     setup.file = options.output, setup.resume = options.resume, setup.checkpoint_seconds = options.checkpoint_seconds;
     setup.header.program_version = CUSP_VERSION;
@@ -44,7 +44,10 @@ sim::RunResult run_case(const SceneFile& scene_file, const RunCaseOptions& optio
     if (!options.quiet)
       for (const std::string& warning : built.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
     ProgressPrinter printer(options.quiet);
-    setup.progress = [&printer](const sim::RunProgress& progress) { printer(progress); };
+    setup.progress = [&](const sim::RunProgress& progress) {
+      printer(progress);
+      if (options.progress) options.progress(progress);
+    };
     setup.stop = &stop_on_signal();
     result = sim::run(scene, setup);
     printer.finish();

@@ -117,8 +117,11 @@ void PanelPainter::Parts::draw_opaque(const Frame& frame, const Panel& panel, co
   const Outline outline = panel.clip ? cut_outline(frame, panel) : Outline();
   for (const ParticleLayer& layer : panel.particles) {
     const auto clip = clip_of(panel, layer.style);
-    particles.draw(visible_spheres(frame.particles[layer.set], layer.style, scale_of(frame, layer.style), clip, layer.shape), layer.shape,
-                   projection, clip);
+    // Behind a cut face within a wall, seen square on, nothing of the body itself shows but balls that stick out of the wall.
+    const bool face_alone = layer.section && clip && !outline.empty() && clip->normal.dot(panel.camera.backward.normalized()) > 0.95f;
+    if (!face_alone)
+      particles.draw(visible_spheres(frame.particles[layer.set], layer.style, scale_of(frame, layer.style), clip, layer.shape), layer.shape,
+                     projection, clip);
     if (layer.section && clip)
       sections.draw(frame.particles[layer.set], layer.style, scale_of(frame, layer.style), *clip, outline, projection, targets.opaque);
   }
