@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -232,6 +233,24 @@ TEST(PlaceParticles, BloodInAPipeMeetsTheWallEvenly) {
     if (radius > 0.53) continue;
     EXPECT_NEAR(shell.depth[i], radius - 0.4, 1e-3);
     EXPECT_LT(shell.normal[i].dot(Vector3d(0, shell.position[i].y(), shell.position[i].z())) / radius, -0.999);
+  }
+}
+
+// Along a short straight pipe every layer holds its share: cells equally far from the surface are not dropped all at one end.
+TEST(PlaceParticles, CoarsePipeHoldsAsMuchInEveryLayer) {
+  PlacementOptions options;
+  options.spacing = 0.2;
+  options.periodic = {false, false, true};
+  options.domain_min = {-2, -2, 0};
+  options.domain_max = {2, 2, 1.6};
+  const Shape blood = cylinder_shape({0, 0, 0}, {0, 0, 1.6}, 1), wall = cylinder_shape({0, 0, 0}, {0, 0, 1.6}, 1.6, 1);
+  const Placement placement = place_particles({{"blood", Matter::fluid, blood}, {"wall", Matter::wall, wall}}, options);
+  std::array<int, 8> fluid{}, solid{};
+  for (const Vector3d& x : placement.bodies[0].position) ++fluid[std::size_t(x.z() / 0.2)];
+  for (const Vector3d& x : placement.bodies[1].position) solid[std::size_t(x.z() / 0.2)] += std::hypot(x.x(), x.y()) < 1.2;
+  for (std::size_t layer = 0; layer < 8; ++layer) {
+    EXPECT_NEAR(fluid[layer], std::numbers::pi * 25, 1.6) << "layer " << layer;
+    EXPECT_NEAR(solid[layer], solid[0], 2) << "layer " << layer;
   }
 }
 
