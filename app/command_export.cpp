@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 
+#include "app/clinical.h"
 #include "app/commands.h"
 #include "app/mesh_files.h"
 #include "app/scene_error.h"
@@ -26,7 +27,7 @@ ExportSurface part_of(const sim::RunFrame& frame, std::int32_t body) {
   ExportSurface part;
   NamedField stress = scalar("von_mises_stress", {}), principal = scalar("largest_principal_stress", {}), pressure = scalar("pressure", {}),
              kind = scalar("kind", {});
-  NamedField velocity{"velocity", 3, {}};
+  NamedField velocity{"velocity", 3, {}}, tensor{"stress", 6, {}};
   for (std::size_t i = 0; i < frame.size(); ++i) {
     if (body >= 0 && frame.body[i] != body) continue;
     part.points.push_back({float(frame.position[i][0]), float(frame.position[i][1]), float(frame.position[i][2])});
@@ -34,14 +35,19 @@ ExportSurface part_of(const sim::RunFrame& frame, std::int32_t body) {
         pressure.values.push_back(frame.pressure[i]);
     kind.values.push_back(frame.kind[i]);
     velocity.values.insert(velocity.values.end(), frame.velocity[i].begin(), frame.velocity[i].end());
+    for (const int k : {0, 3, 5, 1, 4, 2}) tensor.values.push_back(frame.stress[i][static_cast<std::size_t>(k)]);  // VTK: xx yy zz xy yz xz
   }
-  part.fields = {stress, principal, pressure, kind, velocity};
+  for (NamedField* field : {&stress, &principal, &pressure, &tensor}) field->units = "Pa";
+  velocity.units = "m/s";
+  part.fields = {stress, principal, pressure, kind, velocity, tensor};
+  part.time = frame.time;
   return part;
 }
 
 void write_csv(const sim::RunFrame& frame, const std::filesystem::path& file) {
   std::ofstream out(file);
   if (!out) throw std::runtime_error(file.string() + ": can't be written; is the folder there?");
+  out << "# " << standing_notice << "; SI units (m, m/s, Pa); t = " << frame.time << " s\n";
   out << "id,kind,body,x,y,z,vx,vy,vz,pressure,von_mises,principal_stress,sxx,sxy,sxz,syy,syz,szz\n";
   out.precision(9);
   for (std::size_t i = 0; i < frame.size(); ++i) {

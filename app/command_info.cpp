@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/clinical.h"
 #include "app/commands.h"
 #include "app/scene_file.h"
 #include "geometry/check_mesh.h"
@@ -17,6 +18,16 @@ using nlohmann::json;
 const char* kind_word(sim::Kind kind) {
   static const char* const words[] = {"elastic", "shell", "wall", "fluid", "port"};
   return words[static_cast<int>(kind)];
+}
+
+// The largest von Mises stress of any particle of any frame, and its time: for checking other readers of the file; at a clamp it means
+// nothing.
+std::pair<double, double> largest_stress(const sim::RunReader& run) {
+  std::pair<double, double> found{0, 0};
+  for (std::size_t k = 0; k < run.frame_count(); ++k)
+    for (const float value : run.frame(k).von_mises)
+      if (value > found.first) found = {value, run.frame_time(k)};
+  return found;
 }
 
 json run_info(const std::filesystem::path& file) {
@@ -44,6 +55,12 @@ json run_info(const std::filesystem::path& file) {
   info["rows"] = series.size();
   for (std::size_t k = 0; k < header.columns.size() && !series.empty(); ++k)
     info["last"][header.columns[k]] = {{"value", series.back()[k]}, {"units", k < header.units.size() ? header.units[k] : ""}};
+  if (const auto [value, time] = largest_stress(run); value > 0)
+    info["largest_von_mises_in_file"] = {{"value", value}, {"units", "Pa"}, {"time", time}};
+  if (const auto clinical = clinical_figures(run, file)) {
+    info["clinical"] = clinical_json(*clinical);
+    info["clinical_text"] = clinical_text(*clinical);  // for the terminal alone
+  }
   return info;
 }
 
@@ -110,10 +127,15 @@ int show(const std::string& name, bool as_json) {
   } catch (const std::runtime_error& error) {  // an unreadable file is bad input
     throw SceneError(error.what());
   }
-  if (as_json)
+  const std::string figures = info.value("clinical_text", "");
+  info.erase("clinical_text");
+  if (as_json) {
     std::printf("%s\n", info.dump(2).c_str());
-  else
-    print_plain(info, "");
+    return 0;
+  }
+  info.erase("clinical");
+  print_plain(info, "");
+  if (!figures.empty()) std::printf("clinical figures (docs/metrics.md):\n%s", figures.c_str());
   return 0;
 }
 

@@ -27,6 +27,7 @@ int run_program(int argc, char** argv) {
   add_accuracy_command(program, exit_code);
   add_validate_command(program, exit_code);
   add_export_command(program, exit_code);
+  add_report_command(program, exit_code);
   add_info_command(program, exit_code);
   try {
     program.parse(argc, argv);

@@ -18,6 +18,7 @@ void add_sweep_command(CLI::App& program, int& exit_code);
 void add_accuracy_command(CLI::App& program, int& exit_code);
 void add_validate_command(CLI::App& program, int& exit_code);
 void add_export_command(CLI::App& program, int& exit_code);
+void add_report_command(CLI::App& program, int& exit_code);
 void add_info_command(CLI::App& program, int& exit_code);
 
 }  // namespace app

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "app/base64.h"
 #include "render/colormap.h"
 
 namespace app {
@@ -31,15 +32,7 @@ std::array<float, 3> normal_of(const std::array<float, 3>& a, const std::array<f
   return n;
 }
 
-std::string base64(const std::vector<unsigned char>& bytes) {
-  static const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const unsigned group = bytes[i] << 16 | (i + 1 < bytes.size() ? bytes[i + 1] << 8 : 0) | (i + 2 < bytes.size() ? bytes[i + 2] : 0);
-    for (int k = 0; k < 4; ++k) text += i + static_cast<std::size_t>(k) <= bytes.size() || k < 2 ? digits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
+constexpr const char* notice = "for planning research, not for clinical decisions; SI units (m, m/s, Pa)";
 
 template <class T>
 std::size_t append(std::vector<unsigned char>& buffer, const std::vector<T>& values) {
@@ -66,7 +59,7 @@ void write_stl(const ExportSurface& surface, const std::filesystem::path& file) 
 
 void write_ply(const ExportSurface& surface, const std::filesystem::path& file) {
   std::ofstream stream = opened(file);
-  stream << "ply\nformat binary_little_endian 1.0\nelement vertex " << surface.points.size()
+  stream << "ply\nformat binary_little_endian 1.0\ncomment " << notice << "\nelement vertex " << surface.points.size()
          << "\nproperty float x\nproperty float y\nproperty float z\n";
   for (const NamedField& field : surface.fields)
     for (int k = 0; k < field.components; ++k)
@@ -85,13 +78,19 @@ void write_vtp(const ExportSurface& surface, const std::filesystem::path& file) 
   std::ofstream stream = opened(file);
   const std::size_t points = surface.points.size(), triangles = surface.triangles.size();
   const bool cloud = triangles == 0;
-  stream << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n<Piece "
+  stream << "<?xml version=\"1.0\"?>\n<!-- " << notice
+         << " -->\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n<FieldData>\n<DataArray "
+            "type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">"
+         << surface.time
+         << "</DataArray>\n</FieldData>\n<Piece "
             "NumberOfPoints=\""
          << points << "\" NumberOfVerts=\"" << (cloud ? points : 0) << "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\""
          << triangles << "\">\n<PointData>\n";
   for (const NamedField& field : surface.fields) {
     stream << "<DataArray type=\"Float32\" Name=\"" << field.name << "\" NumberOfComponents=\"" << field.components
            << "\" format=\"ascii\">\n";
+    if (!field.units.empty())
+      stream << "<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">" << field.units << "</InformationKey>\n";
     for (float value : field.values) stream << value << " ";
     stream << "\n</DataArray>\n";
   }
@@ -117,7 +116,7 @@ void write_gltf(const ExportSurface& surface, const std::filesystem::path& file)
   std::vector<std::uint32_t> index;
   for (const auto& t : surface.triangles)
     for (std::int32_t corner : t) index.push_back(static_cast<std::uint32_t>(corner));
-  json gltf{{"asset", {{"version", "2.0"}, {"generator", "cusp"}}},
+  json gltf{{"asset", {{"version", "2.0"}, {"generator", "cusp"}, {"extras", {{"notice", notice}, {"time", surface.time}}}}},
             {"scene", 0},
             {"scenes", json::array({{{"nodes", {0}}}})},
             {"nodes", json::array({{{"mesh", 0}}})}};

@@ -12,11 +12,13 @@ struct NamedField {
   std::string name;           // "von_mises_stress"
   int components = 1;         // 1, 3 or 6
   std::vector<float> values;  // components a point
+  std::string units = {};     // "Pa"
 };
 struct ExportSurface {
   std::vector<std::array<float, 3>> points;
   std::vector<std::array<std::int32_t, 3>> triangles;  // empty: a cloud of points
   std::vector<NamedField> fields;
+  double time = 0;  // s, of the frame
 };
 
 // Each throws std::runtime_error where the file can't be written.

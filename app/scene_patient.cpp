@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "app/scene_parts.h"
+#include "sim/lumped_heart.h"
 
 namespace app {
 namespace {
@@ -101,6 +102,27 @@ WaveSpec read_wave(const TableReader& top, const std::string& key, const SceneCo
   return wave;
 }
 
+// Both waves from a heart fitted to cuff readings (sim/lumped_heart.h).
+void read_cuff(const TableReader& top, PatientSpec& patient) {
+  constexpr double pascals_per_mmHg = 133.322, millilitres_per_m3 = 1e6;
+  const TableReader cuff(top.table("cuff"), "patient.cuff", {"systolic", "diastolic", "stroke_volume"});
+  for (const char* key : {"ventricle_pressure", "aortic_pressure"})
+    if (top.has(key)) refuse(top.spot("cuff"), std::string("does not go with ") + key, "give one of them");
+  const sim::CuffReadings readings{patient.heart_rate, cuff.number("systolic", positive) / pascals_per_mmHg,
+                                   cuff.number("diastolic", positive) / pascals_per_mmHg,
+                                   millilitres_per_m3 * cuff.number("stroke_volume", positive)};
+  try {
+    const sim::PortWaves waves = sim::port_waves(sim::simulate_heart(sim::fit_heart(readings)));
+    sim::TimeTable table;
+    table.time = waves.time, table.value = waves.ventricle;
+    patient.ventricle_pressure.table = table;
+    table.value = waves.aorta;
+    patient.aortic_pressure.table = table;
+  } catch (const std::invalid_argument& error) {
+    refuse(top.spot("cuff"), error.what(), "systolic and diastolic are in Pa, stroke_volume in m3");
+  }
+}
+
 void check_valve(const TableReader& top, const SceneContext& context, PatientSpec& patient) {
   if (!top.has("valve")) return;
   const TableReader valve(top.table("valve"), "patient.valve", valve_keys());
@@ -119,8 +141,8 @@ void check_valve(const TableReader& top, const SceneContext& context, PatientSpe
 
 PatientSpec read_patient(const toml::table& table, const SceneContext& context) {
   const TableReader reader(table, "patient",
-                           {"aorta", "valve", "root", "heart_rate", "ventricle_pressure", "aortic_pressure", "blood", "below_annulus",
-                            "above_junction", "extension"});
+                           {"aorta", "valve", "root", "heart_rate", "ventricle_pressure", "aortic_pressure", "cuff", "blood",
+                            "below_annulus", "above_junction", "extension"});
   PatientSpec patient;
   patient.spot = reader.spot();
   if (reader.has("aorta")) {
@@ -133,6 +155,7 @@ PatientSpec read_patient(const toml::table& table, const SceneContext& context) 
   patient.heart_rate = reader.number("heart_rate", {20, 300, false, false, "beats a minute, 20 to 300"}, 75);
   patient.ventricle_pressure = read_wave(reader, "ventricle_pressure", context);
   patient.aortic_pressure = read_wave(reader, "aortic_pressure", context);
+  if (reader.has("cuff")) read_cuff(reader, patient);
   if (reader.has("blood")) {
     const TableReader blood(reader.table("blood"), "patient.blood", {"hematocrit", "density"});
     const double hematocrit = blood.number("hematocrit", {0, 75, false, false, "per cent of cells, 0 to 75"}, 45);

@@ -39,7 +39,7 @@ function unit(a) { const l = Math.hypot(...a) || 1; return a.map(v => v / l); }
 class Viewer {
   constructor(canvas, model) {
     this.canvas = canvas;
-    this.gl = canvas.getContext('webgl', {antialias: true, preserveDrawingBuffer: true});
+    this.gl = canvas.getContext('webgl', {alpha: false, antialias: true, preserveDrawingBuffer: true});
     if (!this.gl) throw new Error('this browser draws no WebGL');
     const gl = this.gl;
     if (!gl.getExtension('OES_element_index_uint')) throw new Error('this browser draws no large models');
