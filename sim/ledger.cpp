@@ -37,14 +37,14 @@ void account_fluid(const Scene<D>& scene, State<D>& state, const Workspace<D>& w
 
 template <int D>
 void account_shell_loads(const Scene<D>& scene, State<D>& state, std::span<const Vector<D>> outer, std::span<const Vector<D>> drag,
-                         double dt) {
-  double power = 0;
+                         std::span<const Vector<D>> place, double dt) {
+  double work = 0;
   for (std::size_t s = 0; s < outer.size(); ++s) {
     const std::size_t row = static_cast<std::size_t>(scene.elastic_count) + s;
     const Vector<D> load = drag.empty() ? outer[s] : Vector<D>(outer[s] - drag[row]);
-    power += load.dot(state.velocity[row]);
+    work += load.dot(place.empty() ? Vector<D>(dt * state.velocity[row]) : Vector<D>(place[s] - state.position[row]));
   }
-  state.ledger.load_work += dt * power;
+  state.ledger.load_work += work;
 }
 
 namespace {
@@ -117,10 +117,11 @@ std::vector<std::string> over_limits(const Scene<D>& scene, const State<D>& stat
   return lines;
 }
 
-#define INSTANTIATE(D)                                                                                                           \
-  template void account_fluid(const Scene<D>&, State<D>&, const Workspace<D>&, double);                                          \
-  template void account_shell_loads(const Scene<D>&, State<D>&, std::span<const Vector<D>>, std::span<const Vector<D>>, double); \
-  template void measure_ledger(const Scene<D>&, State<D>&, Workspace<D>&);                                                       \
+#define INSTANTIATE(D)                                                                                                  \
+  template void account_fluid(const Scene<D>&, State<D>&, const Workspace<D>&, double);                                 \
+  template void account_shell_loads(const Scene<D>&, State<D>&, std::span<const Vector<D>>, std::span<const Vector<D>>, \
+                                    std::span<const Vector<D>>, double);                                                \
+  template void measure_ledger(const Scene<D>&, State<D>&, Workspace<D>&);                                              \
   template std::vector<std::string> over_limits(const Scene<D>&, const State<D>&);
 INSTANTIATE(2)
 INSTANTIATE(3)

@@ -17,10 +17,11 @@ namespace sim {
 template <int D>
 void account_fluid(const Scene<D>& scene, State<D>& state, const Workspace<D>& work, double dt);
 
-// load_work += dt sum F . v over shells, F of loads and gravity. `outer`: with the blood's drag, N; `drag`: that drag, or empty.
+// load_work += sum F . dx over shells, F of loads and gravity. `outer`: with the blood's drag, N; `drag`: that drag by row, or empty;
+// `place`: new positions, m, where state.position still has the old ones; or empty: dx = v dt.
 template <int D>
 void account_shell_loads(const Scene<D>& scene, State<D>& state, std::span<const Vector<D>> outer, std::span<const Vector<D>> drag,
-                         double dt);
+                         std::span<const Vector<D>> place, double dt);
 
 // What is measured once an output: kinetic_energy and elastic_energy now, density_error = rms of n/n0 - 1 over fluid with neither a free
 // surface nor an open end near, and particles_lost = |fluid at the start + in - out - fluid now|.

@@ -211,7 +211,9 @@ void exchange_through_ports(const Scene<D>& scene, State<D>& state, double dt) {
       const double flow = speed * area;
       state.port_flow[p] = flow;
       state.port_volume[p] += flow * dt;
-      state.ledger.port_work += sheet_pressure * flow * dt;
+      // Power with the flow of the step's middle: the sheet moves as the blood did at its start.
+      const bool follows = port.condition == PortCondition::pressure || port.condition == PortCondition::windkessel;
+      state.ledger.port_work += sheet_pressure * (follows ? 0.5 * (flow + area * speed_inside(scene, state, port)) : flow) * dt;
       if (port.condition == PortCondition::pressure) state.port_memory[p] += dt / (dt + impedance_memory) * (speed - state.port_memory[p]);
       if (port.condition == PortCondition::windkessel) {
         const Windkessel& w = port.windkessel;  // C dP/dt = -q - P/R_d with q the flow into the blood

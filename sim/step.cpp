@@ -138,7 +138,7 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
   });
   if (scene.sheet) timed(clocks, Stage::sides, [&] { keep_sides(scene, state, work); });
   account_fluid(scene, state, work, dt);
-  if (scene.shells) account_shell_loads<D>(scene, state, work.shell_outer_force, work.boundary_force, dt);
+  if (scene.shells) account_shell_loads<D>(scene, state, work.shell_outer_force, work.boundary_force, {}, dt);
   timed(clocks, Stage::exchange, [&] {
     exchange_through_ports(scene, state, dt);
     remove_escaped(scene, state);
@@ -162,9 +162,9 @@ void step_dry(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double
   report.elastic_substeps = shells.substeps;
   state.ledger.elastic_substeps += shells.substeps;
   state.ledger.limiter_hits += shells.limiter_hits;
+  account_shell_loads<D>(scene, state, work.shell_outer_force, {}, work.shell_position, dt);
   std::copy(work.shell_position.begin(), work.shell_position.end(), state.position.begin() + scene.elastic_count);
   std::copy(work.shell_velocity.begin(), work.shell_velocity.end(), state.velocity.begin() + scene.elastic_count);
-  account_shell_loads<D>(scene, state, work.shell_outer_force, {}, dt);
 }
 
 }  // namespace

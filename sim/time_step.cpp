@@ -27,7 +27,7 @@ StepLimit time_step_limit(const Scene<D>& scene, const State<D>& state, double u
     if (acceleration > 0) at_most(0.1 * std::sqrt(l0 / acceleration), "acceleration");
     if (state.last_step > 0) at_most(1.1 * state.last_step, "growth");
   }
-  if (!scene.pressure && scene.solids) at_most(0.25 * time.output, "frames");  // solids alone: four steps a frame at least
+  if (!scene.pressure) at_most(0.25 * time.output, "frames");  // solids and shells alone: four steps a frame at least
   if (scheme.maximum_step > 0) at_most(scheme.maximum_step, "setting");
   if (time.step > 0) limit = {time.step, "time.step"};
   // Land on outputs without a sliver of a step before them.
