@@ -6,8 +6,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "tests/app/example_run.h"
 #include "render/video.h"
+#include "tests/app/example_run.h"
 
 namespace app {
 namespace {
@@ -30,6 +30,29 @@ TEST(MovieSchedule, slow_motion_lasts_as_long_as_it_says) {
 TEST(MovieSchedule, holds_rest_on_their_frames) {
   const auto schedule = movie_schedule({0, 1, 2, 3}, 10, std::nullopt, 0.3, {1, 3});
   EXPECT_EQ(schedule, (std::vector<std::size_t>{0, 1, 1, 1, 1, 2, 3, 3, 3, 3}));
+}
+
+TEST(MoviePath, is_read_and_refused) {
+  const std::vector<CameraKey> path = read_camera_path("from_aorta@0,long_axis@0.4");
+  ASSERT_EQ(path.size(), 2u);
+  EXPECT_EQ(path[1].view, "long_axis");
+  EXPECT_EQ(path[1].time, 0.4);
+  for (const char* text : {"", "from_aorta", "from_aorta@", "@1", "a@1,b@1", "a@2,b@1", "a@1x"})
+    EXPECT_THROW(read_camera_path(text), std::invalid_argument) << text;
+}
+
+TEST(MoviePath, leads_from_view_to_view) {
+  render::Panel first, second;
+  first.camera.backward = {0, 0, 1}, second.camera.backward = {1, 0, 0};
+  first.clip = second.clip = render::ClipPlane{};
+  const std::vector<CameraKey> path = {{"a", 1}, {"b", 3}};
+  EXPECT_EQ(panel_on_path({first, second}, path, 0).camera.backward, first.camera.backward);
+  EXPECT_TRUE(panel_on_path({first, second}, path, 1).clip);
+  const render::Panel half = panel_on_path({first, second}, path, 2);
+  EXPECT_NEAR((half.camera.backward - Eigen::Vector3f(1, 0, 1).normalized()).norm(), 0, 1e-5);
+  EXPECT_FALSE(half.clip);  // between two views nothing is cut
+  EXPECT_EQ(panel_on_path({first, second}, path, 9).camera.backward, second.camera.backward);
+  EXPECT_THROW(panel_on_path({first}, path, 0), std::invalid_argument);
 }
 
 TEST(MovieNames, numbers_are_put_in_place_and_bad_patterns_refused) {
@@ -95,6 +118,45 @@ TEST_F(Movie, two_runs_stand_side_by_side) {
       right += image.at(x + 240, y)[0] + image.at(x + 240, y)[1];
     }
   EXPECT_LT(left, right - 20000);
+}
+
+TEST_F(Movie, a_difference_stands_beside_two_runs) {
+  example::write_valve_run(folder_ / "b.h5", 5, 9e5, "Stiffer");
+  job_.runs.push_back(folder_ / "b.h5");
+  job_.output = folder_ / "three.png";
+  job_.difference = true;
+  job_.time = 0.4;
+  job_.width = 900;
+  EXPECT_EQ(make_movie(job_).frames, 1u);
+  // Right third: the difference is positive everywhere on the valve, so it is orange (red above blue), and nowhere blue.
+  const render::Image image = render::read_png((folder_ / "three.png").string());
+  long orange = 0, blue = 0;
+  for (int y = 60; y < 180; ++y)
+    for (int x = 620; x < 800; ++x) {
+      const std::uint8_t* p = image.at(x, y);
+      orange += p[0] > p[2] + 60;
+      blue += p[2] > p[0] + 60;
+    }
+  EXPECT_GT(orange, 300);
+  EXPECT_LT(blue, 20);
+  job_.runs.pop_back();
+  EXPECT_THROW(make_movie(job_), std::invalid_argument);
+}
+
+TEST_F(Movie, stills_of_the_open_and_the_closed_valve_and_previews) {
+  job_.output = folder_ / "open.png";
+  job_.open = true;
+  job_.quality = 1;
+  make_movie(job_);
+  job_.open = false;
+  job_.time = 0.4;  // the widest moment of the made-up beat
+  job_.output = folder_ / "at.png";
+  make_movie(job_);
+  EXPECT_EQ(render::read_png((folder_ / "open.png").string()).rgba, render::read_png((folder_ / "at.png").string()).rgba);
+  job_.time.reset();
+  job_.output = folder_ / "small.gif";
+  EXPECT_EQ(make_movie(job_).frames, 5u);
+  EXPECT_EQ(render::probe_video(job_.output.string()).frames, 5);
 }
 
 TEST_F(Movie, a_signal_ends_it_and_keeps_what_there_is) {
