@@ -76,13 +76,14 @@ void separate_particles(const Scene<D>& scene, State<D>& state, Workspace<D>& wo
   const double l0 = scene.lattice.spacing;
   work.displacement.assign(n, Vector<D>::Zero());
   work.velocity_old = state.velocity;
+  constexpr double certain = 0.1;  // of a spacing: what the surface between curved wall particles is known to
   std::int64_t behind = 0;
   double deepest = 0;
 #pragma omp parallel for schedule(dynamic, 256) reduction(+ : behind) reduction(max : deepest)
   for (Index i = scene.first_fluid; i < n; ++i) {
     if (state.kind[i] != Kind::fluid) continue;
     Vector<D> push = Vector<D>::Zero(), slow = Vector<D>::Zero();
-    double nearest = 1e300, nearest_height = 0;  // of the wall: its own surface decides whether the particle lies behind it
+    double over_wall = 0, weights = 0;  // height over the wall's surface as a smooth mean over its particles (Kolluri 2005)
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
       const std::int32_t j = work.neighbors.index[k];
       const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
@@ -98,7 +99,9 @@ void separate_particles(const Scene<D>& scene, State<D>& state, Workspace<D>& wo
         const Vector<D>& normal = work.boundary_normal[j];
         const double height = -r.dot(normal) - scene.description.particles.depth[j];  // above the true surface, locally flat
         const double aside = (r + r.dot(normal) * -normal).norm();
-        if (distance < nearest) nearest = distance, nearest_height = height;
+        const double w = std::pow(1 - distance * distance / (1.44 * l0 * l0), 2);
+        over_wall += w * height;
+        weights += w;
         if (height > 0.25 * l0 || aside > 0.75 * l0) continue;
         const Vector<D> lift = std::min(0.1 * l0, 0.25 * l0 - height) * normal;
         if (lift.squaredNorm() > push.squaredNorm()) push = lift;
@@ -106,7 +109,7 @@ void separate_particles(const Scene<D>& scene, State<D>& state, Workspace<D>& wo
         if (closing > 0) slow = closing * normal;
       }
     }
-    if (nearest_height < 0) ++behind, deepest = std::max(deepest, -nearest_height);
+    if (over_wall < -certain * l0 * weights) ++behind, deepest = std::max(deepest, -over_wall / weights);
     work.displacement[i] = push;
     state.velocity[i] += slow;
   }
