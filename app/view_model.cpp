@@ -1,8 +1,11 @@
 #include "app/view_model.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
+#include <system_error>
+#include <thread>
 
 #include "app/movie.h"
 #include "app/valve_moments.h"
@@ -15,6 +18,8 @@ namespace app {
 // --- OpenRun ----------------------------------------------------------------------------------------------------------------------------
 
 OpenRun::OpenRun(std::filesystem::path path) : path_(std::move(path)) {
+  std::error_code ignored;
+  written_ = std::filesystem::last_write_time(path_, ignored);
   try {
     reader_ = std::make_unique<sim::RunReader>(path_);
   } catch (const std::runtime_error& error) {
@@ -36,21 +41,24 @@ void OpenRun::build() {
 }
 
 bool OpenRun::refresh() {
-  std::unique_ptr<sim::RunReader> fresh;
-  std::size_t rows = 0;
-  try {
-    fresh = std::make_unique<sim::RunReader>(path_);
-    rows = fresh->column("time").size();
-  } catch (const std::runtime_error&) {
-    return false;  // between two finished states; the next look will do
-  }
-  const bool more =
-      fresh->frame_count() != reader_->frame_count() || rows != reader_->column("time").size() || fresh->status() != reader_->status();
-  if (!more) return false;
+  std::error_code ignored;
+  const auto written = std::filesystem::last_write_time(path_, ignored);
+  if (ignored || written == written_) return false;
+  written_ = written;
+  const std::size_t frames = reader_->frame_count(), rows = reader_->column("time").size();
+  const std::string status = reader_->status();
   maker_.reset();
-  reader_ = std::move(fresh);
+  reader_.reset();  // HDF5 shares what it knows of a file between openings: the old one has to go first
+  for (int attempt = 0; !reader_; ++attempt) {
+    try {
+      reader_ = std::make_unique<sim::RunReader>(path_);
+    } catch (const std::runtime_error& error) {
+      if (attempt > 50) throw SceneError(error.what());
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));  // between two finished states
+    }
+  }
   build();
-  return true;
+  return reader_->frame_count() != frames || reader_->column("time").size() != rows || reader_->status() != status;
 }
 
 const std::vector<double>& OpenRun::times() const {

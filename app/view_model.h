@@ -20,7 +20,7 @@ class OpenRun {
  public:
   // Throws SceneError (one line) where the file is no run.
   explicit OpenRun(std::filesystem::path path);
-  // Reads again what is there; true where frames or rows were added. A file that is being rewritten is left as it was known.
+  // Reads again what is there; true where frames or rows were added. Throws SceneError where the file has gone.
   bool refresh();
   bool growing() const { return reader_->status() == "running"; }
   std::size_t frame_count() const { return maker_ ? maker_->times().size() : 0; }
@@ -37,6 +37,7 @@ class OpenRun {
   void build();
   static constexpr std::size_t kept = 48;
   std::filesystem::path path_;
+  std::filesystem::file_time_type written_;  // when the file was last changed before it was read
   std::unique_ptr<sim::RunReader> reader_;
   std::unique_ptr<FrameMaker> maker_;
   FieldRanges ranges_;
