@@ -260,14 +260,18 @@ void run_cells(const std::vector<const Cell*>& cells, const StabilityOptions& op
     const std::vector<int> found = run_grid(cases, chosen);
     for (std::size_t k = 0; k < names.size(); ++k) codes[names[k]] = found[k];
   };
-  std::vector<GridCase> plain, twins, broken;
-  std::vector<std::string> plain_names, twin_names, broken_names;
+  std::vector<GridCase> plain, twins, threaded, broken;
+  std::vector<std::string> plain_names, twin_names, threaded_names, broken_names;
   for (const Cell* cell : cells) {
     const std::filesystem::path folder = options.output / cell->name;
     plain.push_back({folder, cell->set}), plain_names.push_back(cell->name);
     std::vector<std::string> settings = cell->set;
     settings.insert(settings.end(), cell->twin_set.begin(), cell->twin_set.end());
-    if (cell->twin || cell->restart) twins.push_back({folder / "twin", settings}), twin_names.push_back(cell->name + "/twin");
+    const bool more_threads = cell->twin && cell->twin_set.empty();  // a twin without settings of its own differs by its threads
+    if (cell->twin || cell->restart) {
+      (more_threads ? threaded : twins).push_back({folder / "twin", settings});
+      (more_threads ? threaded_names : twin_names).push_back(cell->name + "/twin");
+    }
     if (cell->restart) {  // stopped after a moment, then continued by the twins' pass
       settings.push_back("limits.wall_time=0.5");
       broken.push_back({folder / "twin", settings}), broken_names.push_back(cell->name + "/broken");
@@ -275,7 +279,8 @@ void run_cells(const std::vector<const Cell*>& cells, const StabilityOptions& op
   }
   pass(plain, plain_names, 1);
   if (!broken.empty()) pass(broken, broken_names, 1);
-  if (!twins.empty()) pass(twins, twin_names, twins.size() == broken.size() ? 1 : 2);
+  if (!twins.empty()) pass(twins, twin_names, 1);
+  if (!threaded.empty()) pass(threaded, threaded_names, 2);
 }
 
 }  // namespace
