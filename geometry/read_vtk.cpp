@@ -317,7 +317,7 @@ class LegacyReader {
     at_ = mark;
     const std::vector<double> mixed = numbers(second, "int");
     for (std::size_t at = 0; ends.size() < first;) {
-      if (at >= mixed.size() || !(mixed[at] >= 0) || at + 1 + std::size_t(mixed[at]) > mixed.size())
+      if (at >= mixed.size() || !(mixed[at] >= 0 && mixed[at] <= double(mixed.size() - at - 1)))
         throw std::runtime_error("is malformed: its faces do not fit their count; export it again");
       const auto corners = std::size_t(mixed[at]);
       connectivity.insert(connectivity.end(), mixed.begin() + std::ptrdiff_t(at) + 1, mixed.begin() + std::ptrdiff_t(at + 1 + corners));
