@@ -34,7 +34,7 @@ TEST(FreeFall, IsExactForAnIrregularDrop) {
   for (std::size_t i = 0; i < state.size(); ++i) {
     EXPECT_NEAR(state.velocity[i][0], 0, 1e-12);
     EXPECT_NEAR(state.velocity[i][1], -9.81 * 5e-3, 1e-12);
-    EXPECT_NEAR((state.position[i] - before.position[i])[1], -9.81 * 1e-6 * 15, 1e-12);
+    EXPECT_NEAR((state.position[i] - before.position[static_cast<std::size_t>(state.id[i])])[1], -9.81 * 1e-6 * 15, 1e-12);
   }
 }
 
