@@ -121,6 +121,7 @@ class WallTable {
         radius_[std::size_t(j) * (around + 1) + i] = radius_at(from_ + (to_ - from_) * i / around, low_ + (high_ - low_) * j / up);
   }
   double at(double theta, double z) const {
+    if (!std::isfinite(theta) || !std::isfinite(z)) return 0;  // relaxed_reference refuses what did not settle
     while (theta < from_ - 0.5 * (turn - (to_ - from_))) theta += turn;
     while (theta > to_ + 0.5 * (turn - (to_ - from_))) theta -= turn;
     const double x = std::clamp((theta - from_) / (to_ - from_), 0.0, 1.0) * around,
@@ -216,6 +217,8 @@ std::vector<Vector3d> relaxed_reference(const Sector& sector, const std::vector<
   problem.bending = options.reference_bending * problem.tension_modulus;
   problem.iterations = options.reference_iterations;
   relax_membrane(problem, position);
+  for (const Vector3d& p : position)
+    if (!p.allFinite()) throw std::runtime_error("no leaflet settles between the found annulus and commissures; give patient.root's planes");
   return position;
 }
 
