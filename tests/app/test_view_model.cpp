@@ -68,7 +68,8 @@ TEST_F(ViewModelTest, pictures_follow_what_is_chosen) {
   const std::string before = model_.signature();
   model_.shown.aorta = false;
   EXPECT_NE(model_.signature(), before);
-  for (const render::SurfaceLayer& layer : model_.pictures()[0].panel.surfaces) EXPECT_GE(layer.surface, first_leaflet);
+  const auto pictures = model_.pictures();
+  for (const render::SurfaceLayer& layer : pictures[0].panel.surfaces) EXPECT_GE(layer.surface, first_leaflet);
   model_.shown.cut = true;
   model_.shown.cut_at = 0.003;
   const render::Panel panel = model_.pictures()[0].panel;
