@@ -78,6 +78,13 @@ void print_paper(const nlohmann::json& all) {
   }
 }
 
+void say(const nlohmann::json& about, void (*in_words)(const nlohmann::json&), bool as_json) {
+  if (as_json)
+    std::printf("%s\n", about.dump(2).c_str());
+  else
+    in_words(about);
+}
+
 }  // namespace
 
 void add_explain_command(CLI::App& program, int& exit_code) {
@@ -90,30 +97,14 @@ void add_explain_command(CLI::App& program, int& exit_code) {
   command->add_flag("--paper", options->paper, "without a scene: what the published elastic operators simulate");
   command->add_flag("--json", options->json, "print one JSON object");
   command->callback([options, &exit_code] {
-    if (options->scene.empty()) {
-      if (options->paper) {
-        const nlohmann::json paper = measure_paper();
-        if (options->json)
-          std::printf("%s\n", paper.dump(2).c_str());
-        else
-          print_paper(paper);
-        exit_code = 0;
-        return;
-      }
-      if (!options->measure) throw CLI::RequiredError("SCENE");
-      const nlohmann::json effects = measure_effects();
-      if (options->json)
-        std::printf("%s\n", effects.dump(2).c_str());
-      else
-        print_effects(effects);
-      exit_code = 0;
-      return;
-    }
-    const nlohmann::json about = explain_scene(read_scene_file(options->scene, options->settings), options->measure ? 5 : 0);
-    if (options->json)
-      std::printf("%s\n", about.dump(2).c_str());
+    if (!options->scene.empty())
+      say(explain_scene(read_scene_file(options->scene, options->settings), options->measure ? 5 : 0), print_plain, options->json);
+    else if (options->paper)
+      say(measure_paper(), print_paper, options->json);
+    else if (options->measure)
+      say(measure_effects(), print_effects, options->json);
     else
-      print_plain(about);
+      throw CLI::RequiredError("SCENE");
     exit_code = 0;
   });
 }

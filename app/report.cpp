@@ -11,6 +11,7 @@
 #include "app/assets.h"
 #include "app/base64.h"
 #include "app/clinical.h"
+#include "app/html_page.h"
 #include "app/movie.h"
 #include "app/report_model.h"
 #include "app/scene_error.h"
@@ -20,12 +21,6 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(file.string() + ": can't be read");
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 json rounded(const std::vector<double>& values) {
   json list = json::array();
@@ -134,12 +129,6 @@ void add_movie(json& data, const fs::path& file, const fs::path& chosen) {
   if (!chosen.empty()) throw SceneError(chosen.string() + ": no such movie; leave --movie out, or make it with cusp render");
 }
 
-void replace(std::string& text, const std::string& mark, const std::string& with) {
-  const std::size_t at = text.find(mark);
-  if (at == std::string::npos) throw std::runtime_error("the report's page has no place for " + mark);
-  text.replace(at, mark.size(), with);
-}
-
 }  // namespace
 
 std::string without_file_names(const std::string& text) {
@@ -186,14 +175,7 @@ nlohmann::json report_run(const fs::path& file, const ReportOptions& options) {
   return data;
 }
 
-std::string report_page(const json& data) {
-  std::string page = text_of(asset("report/page.html")), text = data.dump();
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos;) text.replace(at, 2, "<\\/");  // no end of the script within
-  replace(page, "/*STYLE*/", text_of(asset("report/style.css")));
-  replace(page, "/*SCRIPT*/", text_of(asset("report/curves.js")) + text_of(asset("report/viewer.js")) + text_of(asset("report/page.js")));
-  replace(page, "{\"DATA\":0}", text);
-  return page;
-}
+std::string report_page(const json& data) { return html_page("Valve report", {"curves.js", "viewer.js", "page.js"}, data); }
 
 std::uintmax_t write_report(const ReportOptions& options) {
   json data{{"notice", standing_notice}, {"runs", json::array()}};

@@ -247,6 +247,9 @@ sim::SchemeSettings read_scheme(const toml::table& table) {
       {"viscosity_limit", &S::viscosity_limit, positive},
       {"elastic_substep", &S::elastic_substep, {0, 0.5, true, false, "a number above 0, at most 0.5"}},
       {"added_mass", &S::added_mass, {0, 10, false, false, "0 to 10"}},
+      {"resolved_mass", &S::resolved_mass, {0, 10, false, false, "0 to 10"}},
+      {"bending_viscosity", &S::bending_viscosity, not_negative},
+      {"film_resistance", &S::film_resistance, not_negative},
       {"elastic_tolerance", &S::elastic_tolerance, {0, 0.1, true, false, "a number above 0, at most 0.1"}}};
   std::vector<std::string> known{"name", "pressure_iterations", "outer_iterations", "elastic_explicit_limit", "literal_weight"};
   for (const Knob& knob : knobs) known.push_back(knob.key);

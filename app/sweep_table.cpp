@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "app/assets.h"
 #include "app/clinical.h"
+#include "app/html_page.h"
 #include "app/scene_error.h"
 #include "sim/run_file.h"
 
@@ -100,13 +100,6 @@ void write_csv(const json& table, const fs::path& file) {
   if (!out.flush()) throw std::runtime_error(file.string() + ": can't be written");
 }
 
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 }  // namespace
 
 std::vector<GridCase> listed_cases(const fs::path& file, const fs::path& folder, std::vector<Variation>& variations) {
@@ -162,13 +155,8 @@ json sweep_table(const std::string& title, const std::vector<Variation>& variati
 void write_sweep(const json& table, const fs::path& folder) {
   write_csv(table, folder / "sweep.csv");
   std::ofstream(folder / "sweep.json") << table.dump(2) << "\n";
-  std::string page = text_of(asset("report/sweep.html")), data = table.dump();
-  for (std::size_t at = 0; (at = data.find("</", at)) != std::string::npos;) data.replace(at, 2, "<\\/");
-  for (const auto& [mark, with] : {std::pair<std::string, std::string>{"/*STYLE*/", text_of(asset("report/style.css"))},
-                                   {"/*SCRIPT*/", text_of(asset("report/curves.js")) + text_of(asset("report/sweep.js"))},
-                                   {"{\"DATA\":0}", data}})
-    page.replace(page.find(mark), mark.size(), with);
-  if (!(std::ofstream(folder / "sweep.html") << page)) throw std::runtime_error((folder / "sweep.html").string() + ": can't be written");
+  if (!(std::ofstream(folder / "sweep.html") << html_page("Sweep", {"curves.js", "sweep.js"}, table)))
+    throw std::runtime_error((folder / "sweep.html").string() + ": can't be written");
 }
 
 }  // namespace app

@@ -79,12 +79,27 @@ void write_raw(hid_t parent, const std::string& name, hid_t type, const void* da
   if (!units.empty()) set_attribute(set, "units", units);
 }
 
+namespace {
+
+// A damaged or hostile file may claim any extent; no array of the file is larger than the file unpacked, and deflate packs 1032 to 1 at
+// most.
+hsize_t most_entries(hid_t object) {
+  constexpr hsize_t packed = 1100, always = 16 << 20;
+  Handle file(H5Iget_file_id(object), H5Fclose, "the file");
+  hsize_t bytes = 0;
+  check(H5Fget_filesize(file, &bytes), "the file's size");
+  return std::max(always, packed * bytes);
+}
+
+}  // namespace
+
 std::pair<std::size_t, std::size_t> extent(hid_t parent, const std::string& name) {
   Handle set = open_set(parent, name);
   Handle space(H5Dget_space(set), H5Sclose, name);
   std::array<hsize_t, 2> size{0, 1};
   if (H5Sget_simple_extent_ndims(space) > 2) fail(name);
   check(H5Sget_simple_extent_dims(space, size.data(), nullptr), name);
+  if (size[1] > 0 && size[0] > most_entries(set) / size[1]) fail(name);
   return {size[0], size[1]};
 }
 
@@ -135,6 +150,7 @@ std::string read_text(hid_t parent, const std::string& name, const std::string& 
   if (!exists(parent, name)) return fallback;
   Handle set = open_set(parent, name);
   Handle type(H5Dget_type(set), H5Tclose, name);
+  if (H5Tget_size(type) > most_entries(set)) fail(name);
   std::string text(H5Tget_size(type), '\0');
   check(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), name);
   text.resize(text.find_last_not_of('\0') + 1);
@@ -171,6 +187,7 @@ std::string text_attribute(hid_t object, const std::string& name, const std::str
   if (H5Aexists(object, name.c_str()) <= 0) return fallback;
   Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, name);
   Handle type(H5Aget_type(attribute), H5Tclose, name);
+  if (H5Tget_size(type) > most_entries(attribute)) fail(name);
   std::string text(H5Tget_size(type), '\0');
   check(H5Aread(attribute, type, text.data()), name);
   text.resize(text.find_last_not_of('\0') + 1);

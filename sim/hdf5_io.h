@@ -68,7 +68,7 @@ void write_array(hid_t parent, const std::string& name, const std::vector<T>& da
                  bool compress = true) {
   write_raw(parent, name, type_of<T>(), data.data(), data.size() / columns, columns, units, compress);
 }
-std::pair<std::size_t, std::size_t> extent(hid_t parent, const std::string& name);  // rows, columns
+std::pair<std::size_t, std::size_t> extent(hid_t parent, const std::string& name);  // rows, columns; refuses more than the file can hold
 void read_raw(hid_t parent, const std::string& name, hid_t type, void* data);
 template <class T>
 std::vector<T> read_array(hid_t parent, const std::string& name) {

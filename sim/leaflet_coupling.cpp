@@ -125,8 +125,8 @@ SymmetricMatrix matrix_for_multigrid(const Workspace<D>& work) {
   SymmetricMatrix a;
   a.diagonal = work.matrix.diagonal;
   for (const auto& c : work.coupling) {
-    std::vector<typename Workspace<D>::WetLink> side[2] = {work.wetting[2 * c.shell], work.wetting[2 * c.shell + 1]};
     if (work.wet_share[2 * c.shell] < 0.5 || work.wet_share[2 * c.shell + 1] < 0.5) continue;
+    std::vector<typename Workspace<D>::WetLink> side[2] = {work.wetting[2 * c.shell], work.wetting[2 * c.shell + 1]};
     for (auto& s : side) {
       std::stable_sort(s.begin(), s.end(), [](const auto& p, const auto& q) { return p.weight > q.weight; });
       if (s.size() > strongest) s.resize(strongest);

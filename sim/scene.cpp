@@ -16,8 +16,6 @@
 namespace sim {
 namespace {
 
-constexpr double film_resistance = 3000;  // Pa s/m, between leaflets in blood (contact.h)
-
 template <int D>
 void count_rows(Scene<D>& scene) {
   const auto& particles = scene.description.particles;
@@ -113,7 +111,7 @@ Scene<D> make_scene(SceneDescription<D> description) {
       scene.shells->bending_dashpot = d.scheme.bending_viscosity / d.spacing * (1 + d.scheme.added_mass * layer / own);
     }
     ContactSettings contact;
-    if (fluid) contact.film = film_resistance;
+    if (fluid) contact.film = d.scheme.film_resistance;
     scene.contact = build_contact(d, *scene.shells, contact);
     if (fluid) scene.sheet = std::make_shared<const SheetGeometry<D>>(make_sheet_geometry(*scene.shells));
   }

@@ -170,6 +170,7 @@ struct SchemeSettings {  // every numerical knob; lengths in units of the spacin
   double added_mass = 2.0;           // factor on the blood's mass within a leaflet's own lattice layer, rho (l0 - h) per area
   double resolved_mass = 0.3;        // share of (leaflet + layer) mass by which the blood farther out is felt within a step
   double bending_viscosity = 60;     // m/s: leaflets in blood: the shortest bending wave dies out at the rate of this over l0
+  double film_resistance = 3000;     // Pa s/m: of the film of blood between leaflets that lie on each other (contact.h)
   double elastic_substep = 0.35;     // of l0/c; explicit elastic sub-steps; refused above 0.5
   int elastic_explicit_limit = 200;  // solids: more explicit sub-steps than this in a step, and they are advanced implicitly
   double elastic_tolerance = 1e-8;   // relative residual of implicit and static elastic solves
@@ -187,12 +188,12 @@ struct TimeSettings {
 
 struct Limits {
   std::int64_t particles = 5'000'000;
-  std::int64_t memory = 0;                 // bytes; 0 = none
-  double wall_time = 0;                    // s; 0 = none
+  std::int64_t memory = 0;  // bytes; 0 = none
+  double wall_time = 0;     // s; 0 = none
   // Of the ledger at the end of a run; over one of them the run counts as failed.
-  std::int64_t lost = 0;                   // particles neither inside nor accounted as out
-  double penetration = 4;                  // l0, deepest place of blood behind a leaflet or wall before it was put back
-  double density_error = 0.25;             // rms of n/n0 - 1
+  std::int64_t lost = 0;        // particles neither inside nor accounted as out
+  double penetration = 4;       // l0, deepest place of blood behind a leaflet or wall before it was put back
+  double density_error = 0.25;  // rms of n/n0 - 1
 };
 
 template <int D>

@@ -24,9 +24,9 @@ enum class Stage {
   count
 };
 constexpr std::array<const char*, static_cast<std::size_t>(Stage::count)> stage_names = {
-    "neighbours, density", "ports and walls",   "velocity gradients", "viscosity",      "elastic sub-steps",
-    "pressure assembly",   "leaflet coupling",  "multigrid set-up",   "pressure solve", "pressure gradient",
-    "motion and shifting", "sides of leaflets", "exchange at ports"};
+    "neighbours, density", "ports and walls",          "velocity gradients", "viscosity",      "elastic sub-steps",
+    "pressure assembly",   "leaflet coupling",         "multigrid set-up",   "pressure solve", "pressure gradient",
+    "motion and shifting", "sides of leaflets, walls", "exchange at ports"};
 
 // Adds the wall time between its making and its end to the stage's seconds.
 class StageClock {

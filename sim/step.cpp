@@ -103,7 +103,7 @@ void pressure_stage(const Scene<D>& scene, State<D>& state, Workspace<D>& work, 
 template <int D>
 void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
   std::vector<double>& clocks = work.stage_seconds;
-  timed(clocks, Stage::neighbors, [&] { find_neighborhood(scene, state, work); });
+  find_neighborhood(scene, state, work);
   timed(clocks, Stage::ports_and_walls, [&] {
     prescribe_ports<D>(scene, state, &work, state.time + dt);
     wall_grip(scene, state, work);
@@ -169,8 +169,11 @@ void step_dry(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double
 
 }  // namespace
 
+namespace {
+
+// Neighbours, weights, density and free surface, before anything hides one particle from another.
 template <int D>
-void find_neighborhood(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+void look_around(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
   const std::size_t n = state.size();
   work.search.assign(n, Search::none);
   work.is_fluid.assign(n, 0);
@@ -187,10 +190,20 @@ void find_neighborhood(const Scene<D>& scene, const State<D>& state, Workspace<D
   link_weights(scene, state, work);
   particle_number_density(scene, state, work);
   find_free_surface(scene, state, work);
-  if (scene.sheet)
-    timed(work.stage_seconds, Stage::sides, [&] { cut_links(scene, state, work); });
-  else
-    cut_links_through_walls(scene, state, work);
+}
+
+}  // namespace
+
+template <int D>
+void find_neighborhood(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+  const std::size_t n = state.size();
+  timed(work.stage_seconds, Stage::neighbors, [&] { look_around(scene, state, work); });
+  timed(work.stage_seconds, Stage::sides, [&] {
+    if (scene.sheet)
+      cut_links(scene, state, work);
+    else
+      cut_links_through_walls(scene, state, work);
+  });
   if (scene.pressure && !scene.pressure->free_surface && (state.step > 0 || !scene.sheet)) work.surface.assign(n, 0);
 }
 
