@@ -68,6 +68,7 @@ struct Running {
   std::optional<RunWriter> writer;
   Checkpoint book;  // frames, rows, next output, wall seconds of earlier parts
   double started = now_seconds(), checkpointed = started;
+  std::string status_before{};  // of the run that is continued
   RunResult result{};
 
   double wall() const { return book.wall_seconds + now_seconds() - started; }
@@ -138,6 +139,7 @@ struct Running {
       {
         const RunReader reader(setup.file);
         std::tie(state, book) = reader.template checkpoint<D>();
+        status_before = reader.status();
         if (reader.header().columns != complete_header(scene, setup.header).columns)
           throw std::runtime_error(setup.file.string() + ": was written for another scene; run it again without --continue");
       }
@@ -221,6 +223,11 @@ struct Running {
       write_outputs(from, before);
       report();
     }
+    close();
+  }
+
+  // The books are closed. A run that was killed after its last step, before this, is closed when it is continued.
+  void close() {
     result.over_limits = over_limits(scene, state);
     for (const std::string& line : result.over_limits) writer->add_warning(line);
     end(RunEnding::finished, "finished", "");
@@ -261,11 +268,12 @@ RunResult run(const Scene<D>& scene, const RunSetup& setup) {
   Running<D> running{scene, setup, {}, {}, {}, {}, {}, {}};
   running.start();
   running.result.columns = complete_header(scene, setup.header).columns;
-  if (running.finished()) {
-    running.result.ending = RunEnding::already_finished;
-  } else {
+  if (!running.finished())
     running.loop();
-  }
+  else if (running.status_before == "finished")
+    running.result.ending = RunEnding::already_finished;
+  else
+    running.close();
   running.result.time = running.state.time;
   running.result.steps = running.state.step;
   running.result.frames = running.book.frames;

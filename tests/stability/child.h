@@ -21,9 +21,10 @@ namespace fs = std::filesystem;
 
 struct ChildOptions {
   rlim_t largest_file = RLIM_INFINITY, address_space = RLIM_INFINITY;  // bytes
-  uid_t user = 0;           // other than 0: run as this user (where the test itself runs as root)
-  double kill_after = 0;    // s; 0 = never
-  int kill_with = SIGKILL;  // then
+  uid_t user = 0;              // other than 0: run as this user (where the test itself runs as root)
+  double kill_after = 0;       // s; 0 = never
+  fs::path kill_once_there{};  // or as soon as this file exists
+  int kill_with = SIGKILL;     // then
 };
 
 struct ChildResult {
@@ -81,10 +82,10 @@ inline ChildResult wait_for(pid_t child, const fs::path& log) {
 
 inline ChildResult run_cusp(const std::vector<std::string>& words, const fs::path& log, const ChildOptions& options = {}) {
   const pid_t child = start_cusp(words, log, options);
-  if (options.kill_after > 0) {
+  if (options.kill_after > 0 || !options.kill_once_there.empty()) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(options.kill_after);
     siginfo_t about{};
-    while (std::chrono::steady_clock::now() < end) {
+    while (options.kill_after > 0 ? std::chrono::steady_clock::now() < end : !fs::exists(options.kill_once_there)) {
       about.si_pid = 0;
       if (waitid(P_PID, static_cast<id_t>(child), &about, WEXITED | WNOHANG | WNOWAIT) == 0 && about.si_pid != 0) break;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
