@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <queue>
 #include <sstream>
 #include <stdexcept>
 
@@ -48,28 +49,49 @@ struct Fixed {
   std::vector<double> volume;
 };
 
-// Each obstacle swallows the nearest particles, blood or wall, until they make up its volume.
-void give_up_volume(Draft& draft, const PlacementOptions& options) {
+// Obstacles swallow particles, blood or wall, until these make up their volume: one after the other the one that stands most crowded
+// beside an obstacle, so that both sides of a sheet give alike.
+void give_up_volume(Draft& draft, const PeriodicBox& box, const PlacementOptions& options) {
   if (options.obstacle_position.empty()) return;
-  const PointGrid grid(draft.position, 2.5 * options.spacing);
-  std::vector<std::uint8_t> gone(draft.position.size(), 0);
+  const double support = 2.4 * options.spacing;
+  const PointGrid grid(draft.position, support, box), obstacles(options.obstacle_position, support, box);
+  const std::size_t n = draft.position.size();
+  std::vector<double> crowding(n, -1);  // sum of V W(r) over particles and obstacles; < 0: not beside an obstacle
+  const auto kernel = [&](double d2) { return wendland(std::sqrt(d2), support, options.dimension); };
   double debt = 0;
   for (std::size_t o = 0; o < options.obstacle_position.size(); ++o) {
-    std::size_t nearest = draft.position.size();
-    double best = 1e300;
     bool inside = false;
     grid.for_each_near(options.obstacle_position[o], [&](std::size_t i, const Vector3d&, double d2) {
-      if (draft.body[i] == no_body) return;
-      inside |= d2 < options.spacing * options.spacing;
-      if (gone[i] || d2 >= best) return;
-      best = d2;
-      nearest = i;
+      if (draft.body[i] == no_body || d2 >= options.spacing * options.spacing) return;
+      inside = true;
+      crowding[i] = 0;
     });
-    if (!inside) continue;
-    debt += options.obstacle_volume[o];
-    if (nearest == draft.position.size() || debt < 0.5 * draft.volume[nearest]) continue;
-    gone[nearest] = 1;
-    debt -= draft.volume[nearest];
+    if (inside) debt += options.obstacle_volume[o];
+  }
+  using Candidate = std::pair<double, std::ptrdiff_t>;  // crowding, -row: of equals the first row goes first
+  std::priority_queue<Candidate> most;
+  const auto offer = [&](std::size_t i) { most.emplace(crowding[i], -std::ptrdiff_t(i)); };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (crowding[i] < 0) continue;
+    grid.for_each_near(draft.position[i], [&](std::size_t j, const Vector3d&, double d2) { crowding[i] += draft.volume[j] * kernel(d2); });
+    obstacles.for_each_near(draft.position[i],
+                            [&](std::size_t o, const Vector3d&, double d2) { crowding[i] += options.obstacle_volume[o] * kernel(d2); });
+    offer(i);
+  }
+  std::vector<std::uint8_t> gone(n, 0);
+  while (!most.empty()) {
+    const auto [value, row] = most.top();
+    const auto i = std::size_t(-row);
+    most.pop();
+    if (gone[i] || value != crowding[i]) continue;  // offered again since, less crowded
+    if (debt < 0.5 * draft.volume[i]) break;
+    gone[i] = 1;
+    debt -= draft.volume[i];
+    grid.for_each_near(draft.position[i], [&](std::size_t j, const Vector3d&, double d2) {
+      if (gone[j] || crowding[j] < 0) return;
+      crowding[j] -= draft.volume[i] * kernel(d2);
+      offer(j);
+    });
   }
   Draft kept;
   for (std::size_t i = 0; i < gone.size(); ++i) {
@@ -81,6 +103,20 @@ void give_up_volume(Draft& draft, const PlacementOptions& options) {
     kept.cell.push_back(draft.cell[i]);
   }
   draft = std::move(kept);
+}
+
+// The room that a fluid leaves for a sheet placed before (an obstacle) is no room for the lattice: a sheet fills whole cells whatever its
+// thickness, and cells fitted to so thin a slit would be narrower than the particles they stand for. It is filled, and given up again.
+void fill_slits(Shape& shape, const PlacementOptions& options) {
+  std::erase_if(shape.subtract, [&](const Shape& part) {
+    if (!is_rectilinear(part, options.dimension)) return false;
+    const BoundingBox box = bounding_box(part, options.dimension);
+    double thickness = box.max.x() - box.min.x();
+    for (int k = 1; k < options.dimension; ++k) thickness = std::min(thickness, box.max[k] - box.min[k]);
+    if (thickness > 1.5 * options.spacing) return false;
+    const auto holds = [&](const Vector3d& at) { return contains(part, at, options.dimension); };
+    return std::any_of(options.obstacle_position.begin(), options.obstacle_position.end(), holds);
+  });
 }
 
 // Keeps a particle on its side: a body's inside by `standoff` of its own surface, a ghost outside all bodies likewise.
@@ -253,7 +289,9 @@ void add_wall_surfaces(std::vector<ParticleSet>& sets, const std::vector<PlacedB
   }
 }
 
-void place_fluid_and_walls(const std::vector<PlacedBody>& bodies, const PlacementOptions& options, Placement& placement) {
+void place_fluid_and_walls(std::vector<PlacedBody> bodies, const PlacementOptions& options, Placement& placement) {
+  for (PlacedBody& body : bodies)
+    if (body.matter == Matter::fluid) fill_slits(body.shape, options);
   std::vector<int> members;
   for (Matter matter : {Matter::fluid, Matter::wall})
     for (std::size_t b = 0; b < bodies.size(); ++b)
@@ -268,7 +306,7 @@ void place_fluid_and_walls(const std::vector<PlacedBody>& bodies, const Placemen
     if (!is_rectilinear(bodies[m].shape, options.dimension)) balance_volume(cells, bodies, members, m, volume[m], options);
   }
   Draft draft = draft_particles(cells, cells_to_relax(cells, bodies, options));
-  give_up_volume(draft, options);
+  give_up_volume(draft, cells.lattice.periodic, options);
   const std::size_t moving = std::count(draft.mobile.begin(), draft.mobile.end(), 1);
   if (moving > 0) {
     Fixed fixed{options.obstacle_position, options.obstacle_volume};

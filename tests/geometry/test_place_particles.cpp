@@ -254,6 +254,39 @@ TEST(PlaceParticles, CoarsePipeHoldsAsMuchInEveryLayer) {
   }
 }
 
+// Two flaps 0.5 mm thick on 2 mm particles, whose lengths no spacing divides: each flap takes whole cells, half from either side.
+TEST(PlaceParticles, ThinFlapsTakeFromBothSidesAlike) {
+  constexpr double l0 = 0.002;
+  PlacementOptions options = plane(l0);
+  double flaps = 0;
+  for (int s = 0; s < 5; ++s)
+    for (double side : {-1.0, 1.0}) {
+      options.obstacle_position.push_back({0, side * (0.0019 + 0.0018 * s), 0});
+      options.obstacle_volume.push_back(0.0018 * l0);
+      flaps += 0.0018 * l0;
+    }
+  Shape blood = box_shape({-0.016, -0.01, 0}, {0.024, 0.01, 0});
+  blood.subtract = {box_shape({-0.00025, 0.001, 0}, {0.00025, 0.01, 0}), box_shape({-0.00025, -0.01, 0}, {0.00025, -0.001, 0})};
+  Shape wall = box_shape({-0.016, -0.018, 0}, {0.024, 0.018, 0});
+  wall.subtract = {box_shape({-0.017, -0.01, 0}, {0.025, 0.01, 0})};
+  const Placement placement = place_particles({{"blood", Matter::fluid, blood}, {"wall", Matter::wall, wall}}, options);
+  const ParticleSet& fluid = placement.bodies[0];
+  EXPECT_NEAR(static_cast<double>(fluid.size()), (0.04 * 0.02 - flaps) / (l0 * l0), 1);
+  std::array<int, 2> beside{};
+  for (const Vector3d& x : fluid.position)
+    if (std::abs(x.x()) < 0.01) ++beside[x.x() > 0];
+  EXPECT_LE(std::abs(beside[0] - beside[1]), 2);
+  std::vector<Vector3d> all = fluid.position;
+  std::vector<double> volume(fluid.size(), l0 * l0);
+  all.insert(all.end(), placement.bodies[1].position.begin(), placement.bodies[1].position.end());
+  all.insert(all.end(), options.obstacle_position.begin(), options.obstacle_position.end());
+  volume.resize(fluid.size() + placement.bodies[1].size(), l0 * l0);
+  volume.insert(volume.end(), options.obstacle_volume.begin(), options.obstacle_volume.end());
+  const Evenness even = measure_evenness(all, volume, 2, l0);
+  for (std::size_t i = 0; i < fluid.size(); ++i)
+    if (fluid.position[i].x() > -0.012 && fluid.position[i].x() < 0.02) EXPECT_NEAR(even.density[i], 1, 0.05) << fluid.position[i];
+}
+
 TEST(PlaceParticles, SameParticlesForAnyNumberOfThreadsAndRepeat) {
   const PlacementOptions options = plane(0.01);
   const std::vector<PlacedBody> bodies{{"drop", Matter::fluid, sphere_shape({0, 0, 0}, 0.3)}};
