@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "render/skin.h"
-
 namespace render {
 namespace {
 
@@ -16,29 +14,6 @@ std::vector<float> triangle_areas(const std::vector<Eigen::Vector3f>& positions,
   areas.reserve(triangles.size());
   for (const auto& [a, b, c] : triangles) areas.push_back(0.5f * (positions[b] - positions[a]).cross(positions[c] - positions[a]).norm());
   return areas;
-}
-
-// Whom a vertex follows: along the border, its two neighbours there; inside, all.
-std::vector<std::vector<std::int32_t>> followed(std::size_t count, const std::vector<std::array<std::int32_t, 3>>& triangles) {
-  std::vector<std::vector<std::int32_t>> inner(count), border(count);
-  for (const auto& triangle : triangles)
-    for (int k = 0; k < 3; ++k) {
-      inner[triangle[k]].push_back(triangle[(k + 1) % 3]);
-      inner[triangle[k]].push_back(triangle[(k + 2) % 3]);
-    }
-  for (const auto& [a, b] : border_edges(triangles)) {
-    border[a].push_back(b);
-    border[b].push_back(a);
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!border[i].empty()) {
-      inner[i] = border[i].size() == 2 ? border[i] : std::vector<std::int32_t>();
-      continue;
-    }
-    std::sort(inner[i].begin(), inner[i].end());
-    inner[i].erase(std::unique(inner[i].begin(), inner[i].end()), inner[i].end());
-  }
-  return inner;
 }
 
 }  // namespace
@@ -62,10 +37,29 @@ std::vector<float> recovered(std::vector<float> values, const std::vector<Eigen:
   return values;
 }
 
-std::vector<Eigen::Vector3f> faired(std::vector<Eigen::Vector3f> positions, const std::vector<std::array<std::int32_t, 3>>& triangles,
-                                    int rounds) {
-  if (rounds <= 0) return positions;
-  const auto others = followed(positions.size(), triangles);
+Followed followed(std::size_t count, const Topology& topology) {
+  Followed inner(count), border(count);
+  for (const auto& triangle : topology.triangles)
+    for (int k = 0; k < 3; ++k) {
+      inner[triangle[k]].push_back(triangle[(k + 1) % 3]);
+      inner[triangle[k]].push_back(triangle[(k + 2) % 3]);
+    }
+  for (const auto& [a, b] : topology.border) {
+    border[a].push_back(b);
+    border[b].push_back(a);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!border[i].empty()) {
+      inner[i] = border[i].size() == 2 ? border[i] : std::vector<std::int32_t>();
+      continue;
+    }
+    std::sort(inner[i].begin(), inner[i].end());
+    inner[i].erase(std::unique(inner[i].begin(), inner[i].end()), inner[i].end());
+  }
+  return inner;
+}
+
+std::vector<Eigen::Vector3f> faired(std::vector<Eigen::Vector3f> positions, const Followed& others, int rounds) {
   for (int round = 0; round < 2 * rounds; ++round) {
     const float step = round % 2 == 0 ? 0.5f : -0.53f;
     std::vector<Eigen::Vector3f> next = positions;

@@ -8,6 +8,7 @@
 #include "render/draw_section.h"
 #include "render/draw_surface.h"
 #include "render/shader.h"
+#include "render/skin_cache.h"
 
 namespace render {
 namespace {
@@ -62,12 +63,12 @@ std::optional<ClipPlane> clip_of(const Panel& panel, const Style& style) { retur
 
 // The curves in which the clip plane cuts the first translucent surface (a vessel), where they are closed: no open border crosses the
 // plane.
-Outline cut_outline(const Frame& frame, const Panel& panel) {
+Outline cut_outline(const Frame& frame, const Panel& panel, SkinCache& skins) {
   for (const SurfaceLayer& layer : panel.surfaces) {
     if (layer.style.opacity >= 1 || !layer.section) continue;
     const Surface& surface = frame.surfaces[layer.surface];
     const auto above = [&](std::int32_t i) { return panel.clip->normal.dot(surface.vertices[i] - panel.clip->point) > 0; };
-    for (const auto& [a, b] : border_edges(surface.triangles))
+    for (const auto& [a, b] : skins.border(surface))
       if (above(a) != above(b)) return {};
     return section(surface.vertices, surface.triangles, *panel.clip);
   }
@@ -84,6 +85,7 @@ struct PanelPainter::Parts {
   GlassPainter glass;
   LinePainter lines;
   SectionPainter sections;
+  SkinCache skins;
   Program occlusion = make_program("screen.vert", "occlusion.frag"), light = make_program("screen.vert", "light.frag"),
           resolve = make_program("screen.vert", "resolve.frag");
   VertexArray screen = make_vertex_array();
@@ -112,9 +114,9 @@ void PanelPainter::Parts::draw_opaque(const Frame& frame, const Panel& panel, co
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   for (const SurfaceLayer& layer : panel.surfaces)
     if (layer.style.opacity >= 1)
-      surfaces.draw(drawn_mesh(frame.surfaces[layer.surface], layer.style.field), scale_of(frame, layer.style), layer.style.color,
+      surfaces.draw(skins.drawn(frame.surfaces[layer.surface], layer.style.field), scale_of(frame, layer.style), layer.style.color,
                     projection, clip_of(panel, layer.style));
-  const Outline outline = panel.clip ? cut_outline(frame, panel) : Outline();
+  const Outline outline = panel.clip ? cut_outline(frame, panel, skins) : Outline();
   for (const ParticleLayer& layer : panel.particles) {
     const auto clip = clip_of(panel, layer.style);
     // Behind a cut face within a wall, seen square on, nothing of the body itself shows but balls that stick out of the wall.
@@ -176,14 +178,7 @@ void PanelPainter::Parts::draw_lines(const Frame& frame, const Panel& panel, con
   for (const SurfaceLayer& layer : panel.surfaces) {
     const Surface& surface = frame.surfaces[layer.surface];
     const Color dark = 0.35f * layer.style.color;
-    if (layer.rim) {
-      const DrawnMesh mesh = mid_mesh(surface, -1);
-      const std::vector<Eigen::Vector3f> outward = border_outward(mesh);
-      const auto rim = [&](std::int32_t i) { return Eigen::Vector3f(mesh.positions[i] + 0.5f * surface.thickness * outward[i]); };
-      std::vector<std::array<Eigen::Vector3f, 2>> pairs;
-      for (const auto& [a, b] : border_edges(mesh.triangles)) pairs.push_back({rim(a), rim(b)});
-      lines.draw(segments(pairs, dark), width(2), lift, false, projection);
-    }
+    if (layer.rim) lines.draw(segments(skins.rim(surface), dark), width(2), lift, false, projection);
     if (layer.section && panel.clip) {
       const auto cut = section(surface.vertices, surface.triangles, *panel.clip);
       const float thick = surface.thickness * projection.pixels_per_metre;  // the cut skin: its own colour within a dark edge
@@ -201,7 +196,7 @@ void PanelPainter::Parts::draw_glass(const Frame& frame, const Panel& panel, con
   Glass all;
   for (const SurfaceLayer& layer : panel.surfaces)
     if (layer.style.opacity < 1)
-      all.add(drawn_mesh(frame.surfaces[layer.surface], layer.style.field), layer.style, scale_of(frame, layer.style));
+      all.add(skins.drawn(frame.surfaces[layer.surface], layer.style.field), layer.style, scale_of(frame, layer.style));
   glass.draw(all, projection, panel.clip);
 }
 

@@ -6,65 +6,30 @@
 #include <map>
 #include <utility>
 
-#include "render/fairing.h"
-
 namespace render {
 namespace {
 
-struct Edge {
-  std::int32_t low, high;               // vertices, low < high
-  std::int32_t opposite[2] = {-1, -1};  // the triangles' third vertices
-  std::int32_t triangle_corner;         // 3 * triangle + corner where it was found
-};
-
-// All edges once, in the order of their vertices; `of_corner[3 t + k]` is the edge from corner k to corner k + 1 of triangle t.
-std::vector<Edge> edges(const std::vector<std::array<std::int32_t, 3>>& triangles, std::vector<std::int32_t>& of_corner) {
-  std::vector<Edge> all;
-  all.reserve(3 * triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t a = triangles[t][k], b = triangles[t][(k + 1) % 3];
-      Edge edge{std::min(a, b), std::max(a, b), {triangles[t][(k + 2) % 3], -1}, static_cast<std::int32_t>(3 * t + k)};
-      all.push_back(edge);
-    }
-  std::sort(all.begin(), all.end(), [](const Edge& a, const Edge& b) {
-    if (a.low != b.low) return a.low < b.low;
-    if (a.high != b.high) return a.high < b.high;
-    return a.triangle_corner < b.triangle_corner;
-  });
-  of_corner.assign(3 * triangles.size(), -1);
-  std::vector<Edge> unique;
-  for (const Edge& edge : all) {
-    if (!unique.empty() && unique.back().low == edge.low && unique.back().high == edge.high)
-      unique.back().opposite[1] = edge.opposite[0];
-    else
-      unique.push_back(edge);
-    of_corner[edge.triangle_corner] = static_cast<std::int32_t>(unique.size()) - 1;
-  }
-  return unique;
-}
-
 // New places of the old vertices (Loop's "even" rule).
-std::vector<Eigen::Vector3f> smoothed_vertices(const DrawnMesh& mesh, const std::vector<Edge>& all) {
-  const std::size_t count = mesh.positions.size();
-  std::vector<Eigen::Vector3f> inner(count, Eigen::Vector3f::Zero()), border(count, Eigen::Vector3f::Zero()), result(mesh.positions);
+std::vector<Eigen::Vector3f> smoothed_vertices(const std::vector<Eigen::Vector3f>& positions, const std::vector<Edge>& edges) {
+  const std::size_t count = positions.size();
+  std::vector<Eigen::Vector3f> inner(count, Eigen::Vector3f::Zero()), border(count, Eigen::Vector3f::Zero()), result(positions);
   std::vector<int> degree(count, 0), border_degree(count, 0);
-  for (const Edge& edge : all) {
+  for (const Edge& edge : edges) {
     for (const auto& [here, there] : {std::pair{edge.low, edge.high}, std::pair{edge.high, edge.low}}) {
-      inner[here] += mesh.positions[there];
+      inner[here] += positions[there];
       ++degree[here];
       if (edge.opposite[1] < 0) {
-        border[here] += mesh.positions[there];
+        border[here] += positions[there];
         ++border_degree[here];
       }
     }
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (border_degree[i] == 2) {
-      result[i] = 0.75f * mesh.positions[i] + 0.125f * border[i];
+      result[i] = 0.75f * positions[i] + 0.125f * border[i];
     } else if (border_degree[i] == 0 && degree[i] > 2) {
       const float weight = degree[i] == 3 ? 3.0f / 16 : 3.0f / (8 * static_cast<float>(degree[i]));
-      result[i] = (1 - static_cast<float>(degree[i]) * weight) * mesh.positions[i] + weight * inner[i];
+      result[i] = (1 - static_cast<float>(degree[i]) * weight) * positions[i] + weight * inner[i];
     }
   }
   return result;
@@ -85,48 +50,28 @@ std::vector<Eigen::Vector3f> vertex_normals(const std::vector<Eigen::Vector3f>& 
   return normals;
 }
 
-DrawnMesh subdivide(const DrawnMesh& mesh) {
-  std::vector<std::int32_t> of_corner;
-  const std::vector<Edge> all = edges(mesh.triangles, of_corner);
-  DrawnMesh fine;
-  fine.positions = smoothed_vertices(mesh, all);
-  fine.values = mesh.values;
-  const auto first_new = static_cast<std::int32_t>(fine.positions.size());
-  for (const Edge& edge : all) {
-    const Eigen::Vector3f ends = mesh.positions[edge.low] + mesh.positions[edge.high];
+std::vector<Eigen::Vector3f> subdivided(const std::vector<Eigen::Vector3f>& positions, const Topology& topology) {
+  std::vector<Eigen::Vector3f> fine = smoothed_vertices(positions, topology.edges);
+  fine.reserve(positions.size() + topology.edges.size());
+  for (const Edge& edge : topology.edges) {
+    const Eigen::Vector3f ends = positions[edge.low] + positions[edge.high];
     if (edge.opposite[1] < 0)
-      fine.positions.emplace_back(0.5f * ends);
+      fine.emplace_back(0.5f * ends);
     else
-      fine.positions.emplace_back(0.375f * ends + 0.125f * (mesh.positions[edge.opposite[0]] + mesh.positions[edge.opposite[1]]));
-    fine.values.push_back(0.5f * (mesh.values[edge.low] + mesh.values[edge.high]));
+      fine.emplace_back(0.375f * ends + 0.125f * (positions[edge.opposite[0]] + positions[edge.opposite[1]]));
   }
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    const std::int32_t ab = first_new + of_corner[3 * t], bc = first_new + of_corner[3 * t + 1], ca = first_new + of_corner[3 * t + 2];
-    fine.triangles.push_back({a, ab, ca});
-    fine.triangles.push_back({b, bc, ab});
-    fine.triangles.push_back({c, ca, bc});
-    fine.triangles.push_back({ab, bc, ca});
-  }
-  fine.normals = vertex_normals(fine.positions, fine.triangles);
   return fine;
 }
 
-std::vector<std::array<std::int32_t, 2>> border_edges(const std::vector<std::array<std::int32_t, 3>>& triangles) {
-  std::vector<std::int32_t> of_corner;
-  std::vector<std::array<std::int32_t, 2>> result;
-  for (const Edge& edge : edges(triangles, of_corner)) {
-    if (edge.opposite[1] >= 0) continue;
-    const auto& triangle = triangles[edge.triangle_corner / 3];
-    const int k = edge.triangle_corner % 3;
-    result.push_back({triangle[k], triangle[(k + 1) % 3]});
-  }
-  return result;
+std::vector<float> subdivided(std::vector<float> values, const Topology& topology) {
+  values.reserve(values.size() + topology.edges.size());
+  for (const Edge& edge : topology.edges) values.push_back(0.5f * (values[edge.low] + values[edge.high]));
+  return values;
 }
 
-std::vector<Eigen::Vector3f> border_outward(const DrawnMesh& mesh) {
+std::vector<Eigen::Vector3f> border_outward(const DrawnMesh& mesh, const Border& border) {
   std::vector<Eigen::Vector3f> outward(mesh.positions.size(), Eigen::Vector3f::Zero());
-  for (const auto& [a, b] : border_edges(mesh.triangles)) {
+  for (const auto& [a, b] : border) {
     const Eigen::Vector3f along = mesh.positions[b] - mesh.positions[a];
     outward[a] += along.cross(mesh.normals[a]);
     outward[b] += along.cross(mesh.normals[b]);
@@ -136,26 +81,27 @@ std::vector<Eigen::Vector3f> border_outward(const DrawnMesh& mesh) {
   return outward;
 }
 
-DrawnMesh skin(const DrawnMesh& mesh, float thickness) {
+Skin skin(const DrawnMesh& mesh, float thickness, const Border& border) {
   constexpr int arcs = 4;  // of the half circle round the rim
   const auto count = static_cast<std::int32_t>(mesh.positions.size());
-  DrawnMesh result;
+  Skin skin;
+  DrawnMesh& result = skin.mesh;
   for (const float side : {0.5f, -0.5f})
     for (std::int32_t i = 0; i < count; ++i) {
       result.positions.emplace_back(mesh.positions[i] + side * thickness * mesh.normals[i]);
       result.normals.emplace_back(side > 0 ? mesh.normals[i] : Eigen::Vector3f(-mesh.normals[i]));
-      result.values.push_back(mesh.values[i]);
+      skin.source.push_back(i);
     }
   for (const auto& [a, b, c] : mesh.triangles) {
     result.triangles.push_back({a, b, c});
     result.triangles.push_back({a + count, c + count, b + count});
   }
-  const std::vector<Eigen::Vector3f> outward = border_outward(mesh);
+  const std::vector<Eigen::Vector3f> outward = border_outward(mesh, border);
   std::vector<std::int32_t> first(mesh.positions.size(), -1);  // of a border vertex's points between both sides
   const auto level = [&](std::int32_t vertex, int arc) {
     return arc == 0 ? vertex : arc == arcs ? vertex + count : first[vertex] + arc - 1;
   };
-  for (const auto& [a, b] : border_edges(mesh.triangles)) {
+  for (const auto& [a, b] : border) {
     for (const std::int32_t vertex : {a, b}) {
       if (first[vertex] >= 0) continue;
       first[vertex] = static_cast<std::int32_t>(result.positions.size());
@@ -164,7 +110,7 @@ DrawnMesh skin(const DrawnMesh& mesh, float thickness) {
         const Eigen::Vector3f normal = std::cos(angle) * mesh.normals[vertex] + std::sin(angle) * outward[vertex];
         result.positions.emplace_back(mesh.positions[vertex] + 0.5f * thickness * normal);
         result.normals.push_back(normal);
-        result.values.push_back(mesh.values[vertex]);
+        skin.source.push_back(vertex);
       }
     }
     for (int arc = 0; arc < arcs; ++arc) {
@@ -172,23 +118,7 @@ DrawnMesh skin(const DrawnMesh& mesh, float thickness) {
       result.triangles.push_back({level(b, arc), level(a, arc + 1), level(b, arc + 1)});
     }
   }
-  return result;
-}
-
-DrawnMesh mid_mesh(const Surface& surface, int field) {
-  DrawnMesh mesh;
-  mesh.positions = faired(surface.vertices, surface.triangles, surface.fairing);
-  mesh.triangles = surface.triangles;
-  mesh.values = field >= 0 ? recovered(surface.fields.at(field), surface.vertices, surface.triangles, surface.averaging)
-                           : std::vector<float>(surface.vertices.size(), 0.0f);
-  mesh.normals = vertex_normals(mesh.positions, mesh.triangles);
-  for (int level = 0; level < std::min(surface.smoothing, 3); ++level) mesh = subdivide(mesh);
-  return mesh;
-}
-
-DrawnMesh drawn_mesh(const Surface& surface, int field) {
-  DrawnMesh mesh = mid_mesh(surface, field);
-  return surface.thickness > 0 ? skin(mesh, surface.thickness) : mesh;
+  return skin;
 }
 
 std::vector<std::array<Eigen::Vector3f, 2>> section(const std::vector<Eigen::Vector3f>& positions,

@@ -1,4 +1,4 @@
-#include "render/skin.h"
+#include "render/skin_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -69,7 +69,9 @@ TEST(Skin, normals_point_by_the_right_hand_rule) {
 
 // The plate and, round it, half a tube: pi t^2/8 of cross-section (a polygon of four sides has 0.9 of it), mitred at the corners.
 TEST(Skin, of_a_flat_square_has_the_volume_of_a_plate_with_a_round_rim_and_is_closed) {
-  const DrawnMesh plate = skin(grid(4), 0.5f);
+  const DrawnMesh flat = grid(4);
+  const Skin skinned = skin(flat, 0.5f, make_topology(flat.triangles).border);
+  const DrawnMesh& plate = skinned.mesh;
   const double rim = 16 * 3.14159265 * 0.25 / 8;
   EXPECT_GT(volume(plate), 4 * 4 * 0.5 + 0.75 * rim);
   EXPECT_LT(volume(plate), 4 * 4 * 0.5 + 1.05 * rim);
@@ -78,7 +80,19 @@ TEST(Skin, of_a_flat_square_has_the_volume_of_a_plate_with_a_round_rim_and_is_cl
   float farthest = 0;
   for (const Eigen::Vector3f& p : plate.positions) farthest = std::max(farthest, p.x());
   EXPECT_NEAR(farthest, 4 + 0.25, 1e-5);  // half the thickness beyond the border
-  for (std::size_t i = 0; i < 2 * 25; ++i) EXPECT_EQ(plate.values[i], plate.positions[i].x());
+  ASSERT_EQ(skinned.source.size(), plate.positions.size());
+  for (std::size_t i = 0; i < plate.positions.size(); ++i)  // no point is farther from where its value comes from than half the thickness
+    EXPECT_LE((plate.positions[i] - flat.positions[skinned.source[i]]).norm(), 0.25 + 1e-5);
+}
+
+DrawnMesh subdivide(const DrawnMesh& mesh) {
+  const Topology topology = make_topology(mesh.triangles);
+  DrawnMesh fine;
+  fine.positions = subdivided(mesh.positions, topology);
+  fine.values = subdivided(mesh.values, topology);
+  fine.triangles = refined(topology, mesh.positions.size());
+  fine.normals = vertex_normals(fine.positions, fine.triangles);
+  return fine;
 }
 
 TEST(Skin, subdivision_keeps_a_plane_and_its_values_within_their_range) {
@@ -103,8 +117,8 @@ TEST(Skin, subdivision_follows_loops_weights) {
 }
 
 TEST(Skin, borders_are_the_edges_of_one_triangle) {
-  EXPECT_EQ(border_edges(grid(5).triangles).size(), 20u);
-  EXPECT_TRUE(border_edges(octahedron().triangles).empty());
+  EXPECT_EQ(make_topology(grid(5).triangles).border.size(), 20u);
+  EXPECT_TRUE(make_topology(octahedron().triangles).border.empty());
 }
 
 TEST(Skin, section_of_an_octahedron_is_the_square_it_should_be) {
@@ -140,17 +154,64 @@ TEST(Skin, cut_away_follows_the_plane_and_keeps_values) {
   EXPECT_TRUE(cut_away(whole, {{0, 0, -2}, Eigen::Vector3f::UnitZ()}).triangles.empty());
 }
 
-TEST(Skin, drawn_mesh_takes_the_chosen_field) {
+Surface bent_surface(float height) {
   Surface surface;
-  const DrawnMesh flat = grid(2);
+  const DrawnMesh flat = grid(4);
   surface.vertices = flat.positions;
+  for (Eigen::Vector3f& p : surface.vertices) p.z() = height * p.x() * p.x();
   surface.triangles = flat.triangles;
-  surface.fields = {std::vector<float>(9, 1.0f), std::vector<float>(9, 5.0f)};
+  surface.fields = {flat.values, std::vector<float>(25, 5.0f)};
   surface.smoothing = 2;
+  surface.averaging = surface.fairing = 2;
   surface.thickness = 0.1f;
-  const DrawnMesh drawn = drawn_mesh(surface, 1);
+  return surface;
+}
+
+TEST(SkinCache, takes_the_chosen_field) {
+  SkinCache skins;
+  const Surface surface = bent_surface(0);
+  EXPECT_EQ(skins.drawn(surface, -1).values.size(), skins.drawn(surface, 1).positions.size());
+  const DrawnMesh& drawn = skins.drawn(surface, 1);
   EXPECT_TRUE(std::all_of(drawn.values.begin(), drawn.values.end(), [](float v) { return v == 5.0f; }));
   EXPECT_TRUE(closed(drawn));
+}
+
+// The same in whatever order surfaces and fields are asked for, and however many others came between.
+TEST(SkinCache, remembers_nothing_that_changes_what_is_drawn) {
+  SkinCache used;
+  for (const float height : {0.0f, 0.1f, 0.2f, 0.1f, 0.0f})
+    for (const int field : {0, 1, -1, 0}) {
+      const Surface surface = bent_surface(height);
+      const DrawnMesh& drawn = used.drawn(surface, field);
+      SkinCache fresh;
+      const DrawnMesh& expected = fresh.drawn(surface, field);
+      EXPECT_EQ(drawn.positions, expected.positions);
+      EXPECT_EQ(drawn.normals, expected.normals);
+      EXPECT_EQ(drawn.triangles, expected.triangles);
+      if (field >= 0) {
+        EXPECT_EQ(drawn.values, expected.values);
+      }
+      EXPECT_EQ(used.rim(surface), fresh.rim(surface));
+      if (height == 0.1f)
+        for (std::size_t k = 0; k < 2 * SkinCache::kept; ++k) used.drawn(bent_surface(1.0f + static_cast<float>(k)), 0);
+    }
+}
+
+// Another field of the same shape, other values of the same field, another mesh of the same points.
+TEST(SkinCache, sees_every_change) {
+  SkinCache skins;
+  Surface surface = bent_surface(0.1f);
+  const std::vector<float> first = skins.drawn(surface, 0).values;
+  surface.fields[0][12] += 1;
+  EXPECT_NE(skins.drawn(surface, 0).values, first);
+  surface.fields[0][12] -= 1;
+  EXPECT_EQ(skins.drawn(surface, 0).values, first);
+  surface.averaging = 0;
+  EXPECT_NE(skins.drawn(surface, 0).values, first);
+  EXPECT_EQ(skins.border(surface).size(), 16u);
+  surface.triangles.pop_back();  // of the corner's square: one edge of the border gone, two new
+  EXPECT_EQ(skins.border(surface).size(), 17u);
+  EXPECT_EQ(skins.rim(surface).size(), 4 * 17u);  // split in two at each level
 }
 
 }  // namespace

@@ -1,0 +1,47 @@
+// Surfaces as they are drawn, remembered from picture to picture: several panels of a frame show the same leaflets, and from frame to frame
+// these move but hang together as before. What comes out depends on the surface alone, never on what was asked before. No OpenGL.
+#pragma once
+
+#include <array>
+#include <list>
+#include <memory>
+#include <vector>
+
+#include "render/fairing.h"
+#include "render/skin.h"
+
+namespace render {
+
+// What is returned holds until `kept` other surfaces have been asked for, the values until another field of the same surface is.
+class SkinCache {
+ public:
+  static constexpr std::size_t kept = 24;  // a comparison of three runs shows 15
+  // What is drawn for a surface: its middle, faired and smoothed, with its skin on both sides. `field` < 0: the values mean nothing.
+  const DrawnMesh& drawn(const Surface& surface, int field);
+  // The outline of a skin: segments half its thickness beyond the border of its middle.
+  const std::vector<std::array<Eigen::Vector3f, 2>>& rim(const Surface& surface);
+  // The border of the surface's own triangles.
+  const Border& border(const Surface& surface);
+
+ private:
+  // How the triangles hang together at each level of subdivision, from the surface's own to the drawn one.
+  struct Levels {
+    std::vector<Topology> each;
+    Followed followed;
+  };
+  struct Entry {
+    Surface surface;            // without its fields
+    std::vector<float> values;  // the field that skin.mesh.values shows; empty: none yet
+    std::shared_ptr<const Levels> levels;
+    Skin skin;
+    std::vector<std::array<Eigen::Vector3f, 2>> rim;
+  };
+  std::shared_ptr<const Levels> levels_of(const Surface& surface);
+  Entry make_entry(const Surface& surface);
+  Entry& entry_of(const Surface& surface);
+
+  std::list<Entry> entries_;  // the one used last in front
+  std::list<std::shared_ptr<const Levels>> levels_;
+};
+
+}  // namespace render
