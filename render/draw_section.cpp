@@ -1,6 +1,6 @@
 #include "render/draw_section.h"
 
-#include <algorithm>
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "render/draw_particles.h"
@@ -8,76 +8,16 @@
 namespace render {
 
 SectionPainter::SectionPainter()
-    : splat_(make_program("splat.vert", "splat.frag")),
-      face_(make_program("screen.vert", "section.frag")),
+    : face_(make_program("screen.vert", "section.frag")),
       mask_(make_program("mask.vert", "mask.frag")),
-      vertices_(make_vertex_array()),
       screen_(make_vertex_array()),
       fan_(make_vertex_array()),
-      corners_(make_buffer()),
-      indices_(make_buffer()),
       fan_corners_(make_buffer()),
-      sums_target_(make_framebuffer()),
       inside_target_(make_framebuffer()) {
   glBindVertexArray(fan_);
   glBindBuffer(GL_ARRAY_BUFFER, fan_corners_);
   glEnableVertexAttribArray(0);
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 3 * sizeof(float), nullptr);
-  glBindVertexArray(vertices_);
-  glBindBuffer(GL_ARRAY_BUFFER, corners_);
-  glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, 4 * sizeof(float), nullptr);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
-}
-
-// Sums of weight and weighted value at half size: the field is smooth, and blending floats is the dear part.
-void SectionPainter::spread(const ParticleSet& set, const Style& style, const ColorScale* scale, const ClipPlane& clip,
-                            const Projection& projection) {
-  const int width = (projection.width + 1) / 2, height = (projection.height + 1) / 2;
-  if (width != width_ || height != height_) {
-    width_ = width;
-    height_ = height;
-    sums_ = make_texture(GL_RG32F, width, height, GL_RG, GL_FLOAT);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glBindFramebuffer(GL_FRAMEBUFFER, sums_target_);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, sums_, 0);
-  }
-  const float reach = section_reach * set.radius;
-  std::vector<std::array<float, 4>> corners;
-  for (std::size_t i = 0; i < set.positions.size(); ++i) {
-    const Eigen::Vector3f& p = set.positions[i];
-    if (!p.allFinite() || std::abs(clip.normal.dot(p - clip.point)) >= reach) continue;
-    float value = 0;
-    if (scale) value = static_cast<float>((set.fields[style.field][i] - scale->minimum) / (scale->maximum - scale->minimum));
-    if (std::isnan(value)) continue;
-    corners.insert(corners.end(), 4, {p.x(), p.y(), p.z(), value});
-  }
-  glBindFramebuffer(GL_FRAMEBUFFER, sums_target_);
-  glViewport(0, 0, width, height);
-  glClearColor(0, 0, 0, 0);
-  glClear(GL_COLOR_BUFFER_BIT);
-  glBindVertexArray(vertices_);
-  glBindBuffer(GL_ARRAY_BUFFER, corners_);
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(corners[0])), corners.data(), GL_STREAM_DRAW);
-  const std::size_t count = corners.size() / 4;
-  if (indexed_ < count) {
-    indexed_ = count;
-    std::vector<std::uint32_t> indices;
-    for (std::uint32_t i = 0; i < indexed_; ++i)
-      for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) indices.push_back(4 * i + corner);
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint32_t)), indices.data(), GL_STATIC_DRAW);
-  }
-  glUseProgram(splat_);
-  set_uniforms(splat_, projection);
-  render::set(splat_, "clip_plane", in_view(clip, projection));
-  render::set(splat_, "reach", reach);
-  glDisable(GL_DEPTH_TEST);
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_ONE, GL_ONE);
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * count), GL_UNSIGNED_INT, nullptr);
-  glDisable(GL_BLEND);
-  glEnable(GL_DEPTH_TEST);
 }
 
 // Even-odd filling: every pixel is turned over once for each triangle (first corner, segment) that covers it.
@@ -110,13 +50,24 @@ void SectionPainter::fill_outline(const Outline& outline, const Projection& proj
 
 void SectionPainter::draw(const ParticleSet& particles, const Style& style, const ColorScale* scale, const ClipPlane& clip,
                           const Outline& outline, const Projection& projection, const Framebuffer& target) {
-  spread(particles, style, scale, clip, projection);
+  const PlaneField field = plane_field(particles, style, scale, clip);
+  if (field.width == 0) return;
   if (!outline.empty()) fill_outline(outline, projection);
   glBindFramebuffer(GL_FRAMEBUFFER, target);
   glViewport(0, 0, projection.width, projection.height);
   glUseProgram(face_);
   set_uniforms(face_, projection);
-  set(face_, "sums", sums_, 0);
+  glActiveTexture(GL_TEXTURE0);
+  const Texture sums = make_texture(GL_RG32F, field.width, field.height, GL_RG, GL_FLOAT, field.sums.data());
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  set(face_, "sums", sums, 0);
+  // The field's place and directions in view space, the latter over its whole size.
+  const Eigen::Matrix3f turn = projection.view.block<3, 3>(0, 0);
+  const Eigen::Vector3f corner = (projection.view * field.corner.homogeneous()).head<3>();
+  set(face_, "corner", corner);
+  set(face_, "along", Eigen::Vector3f(turn * field.right / (field.cell * static_cast<float>(field.width))));
+  set(face_, "across", Eigen::Vector3f(turn * field.up / (field.cell * static_cast<float>(field.height))));
   set(face_, "masked", static_cast<int>(!outline.empty()));
   if (!outline.empty()) set(face_, "inside", inside_, 2);
   constexpr int colors = 1024;

@@ -7,11 +7,10 @@
 
 #include "render/camera.h"
 #include "render/frame.h"
+#include "render/plane_field.h"
 #include "render/shader.h"
 
 namespace render {
-
-inline constexpr float section_reach = 2.5f;  // of the particle's drawn radius: how far a particle's value spreads
 
 using Outline = std::vector<std::array<Eigen::Vector3f, 2>>;
 
@@ -25,16 +24,13 @@ class SectionPainter {
             const Projection& projection, const Framebuffer& target);
 
  private:
-  void spread(const ParticleSet& set, const Style& style, const ColorScale* scale, const ClipPlane& clip, const Projection& projection);
   void fill_outline(const Outline& outline, const Projection& projection);
-  Program splat_, face_, mask_;
-  VertexArray vertices_, screen_, fan_;
-  Buffer corners_, indices_, fan_corners_;
-  Texture sums_, inside_;
-  Framebuffer sums_target_, inside_target_;
-  int width_ = 0, height_ = 0;                // of the sums
+  Program face_, mask_;
+  VertexArray screen_, fan_;
+  Buffer fan_corners_;
+  Texture inside_;
+  Framebuffer inside_target_;
   int inside_width_ = 0, inside_height_ = 0;  // of the mask
-  std::size_t indexed_ = 0;
 };
 
 }  // namespace render

@@ -1,9 +1,11 @@
 #include "render/draw_surface.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
+#include <cstdint>
 
 #include "render/draw_particles.h"
 
@@ -84,18 +86,32 @@ void Glass::add(const DrawnMesh& mesh, const Style& style, const ColorScale* sca
         {first + static_cast<std::uint32_t>(a), first + static_cast<std::uint32_t>(b), first + static_cast<std::uint32_t>(c)});
 }
 
-std::vector<std::uint32_t> back_to_front(const Glass& glass, const Projection& projection) {
+std::vector<std::uint32_t> back_to_front(const Glass& glass, const Projection& projection, const std::optional<ClipPlane>& clip) {
   const Eigen::Vector4f depth_row = projection.view.row(2);
-  std::vector<float> depth(glass.vertices.size()), middle(glass.triangles.size());
-  for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = depth_row.head<3>().dot(glass.vertices[i].position);
-  for (std::size_t t = 0; t < middle.size(); ++t) {
-    const auto& [a, b, c] = glass.triangles[t];
-    middle[t] = depth[a] + depth[b] + depth[c];
+  const Eigen::Matrix4f to_clip = projection.projection * projection.view;
+  std::vector<float> depth(glass.vertices.size());
+  std::vector<std::uint8_t> beyond(glass.vertices.size());  // one bit for each side that the vertex lies beyond
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    const Glass::Vertex& vertex = glass.vertices[i];
+    depth[i] = depth_row.head<3>().dot(vertex.position);
+    const Eigen::Vector4f at = to_clip * vertex.position.homogeneous();
+    const bool cut = clip && vertex.clipped > 0.5f && clip->normal.dot(vertex.position - clip->point) > 0;
+    beyond[i] = static_cast<std::uint8_t>((at.x() < -at.w()) | (at.x() > at.w()) << 1 | (at.y() < -at.w()) << 2 | (at.y() > at.w()) << 3 |
+                                          cut << 4);
   }
-  std::vector<std::uint32_t> order(glass.triangles.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return middle[a] != middle[b] ? middle[a] < middle[b] : a < b; });
+  // Sorted as one whole number each: the depth's bits, turned so that they grow with it, then the triangle's number.
+  std::vector<std::uint64_t> keys;
+  keys.reserve(glass.triangles.size());
+  for (std::size_t t = 0; t < glass.triangles.size(); ++t) {
+    const auto& [a, b, c] = glass.triangles[t];
+    if (beyond[a] & beyond[b] & beyond[c]) continue;
+    const auto bits = std::bit_cast<std::uint32_t>(depth[a] + depth[b] + depth[c] + 0.0f);
+    const std::uint32_t growing = bits >> 31 ? ~bits : bits | 0x80000000u;
+    keys.push_back(std::uint64_t{growing} << 32 | t);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::uint32_t> order(keys.size());
+  for (std::size_t t = 0; t < keys.size(); ++t) order[t] = static_cast<std::uint32_t>(keys[t]);
   return order;
 }
 
@@ -113,8 +129,7 @@ GlassPainter::GlassPainter()
 void GlassPainter::draw(const Glass& glass, const Projection& projection, const std::optional<ClipPlane>& clip) {
   if (glass.triangles.empty()) return;
   std::vector<std::array<std::uint32_t, 3>> sorted;
-  sorted.reserve(glass.triangles.size());
-  for (const std::uint32_t t : back_to_front(glass, projection)) sorted.push_back(glass.triangles[t]);
+  for (const std::uint32_t t : back_to_front(glass, projection, clip)) sorted.push_back(glass.triangles[t]);
   glBindVertexArray(vertices_);
   upload(GL_ARRAY_BUFFER, buffer_, glass.vertices);
   upload(GL_ELEMENT_ARRAY_BUFFER, indices_, sorted);

@@ -39,8 +39,9 @@ struct Glass {
   void add(const DrawnMesh& mesh, const Style& style, const ColorScale* scale);
 };
 
-// The triangles' order from the farthest middle to the nearest; equal ones stay in order.
-std::vector<std::uint32_t> back_to_front(const Glass& glass, const Projection& projection);
+// The triangles that may be seen (not wholly beyond one side of the picture, nor wholly cut away), from the farthest middle to the nearest;
+// equal ones stay in order.
+std::vector<std::uint32_t> back_to_front(const Glass& glass, const Projection& projection, const std::optional<ClipPlane>& clip);
 
 // Needs a current context, and a framebuffer with the lit picture and the depth of the opaque things bound.
 class GlassPainter {

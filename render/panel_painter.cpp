@@ -1,6 +1,8 @@
 #include "render/panel_painter.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "render/draw_lines.h"
@@ -16,8 +18,8 @@ namespace {
 // The buffers that a picture of one size is drawn through.
 struct Targets {
   int width = 0, height = 0, scale = 0;  // of the finished picture; pixels squared for each
-  Texture albedo, normals, depth, occlusion, drawn, finished;
-  Framebuffer opaque, occluded, lit, resolved;
+  Texture albedo, normals, depth, occlusion, open_sky, drawn, finished;
+  Framebuffer opaque, occluded, blurred, lit, resolved;
 };
 
 void attach(const Framebuffer& target, std::initializer_list<const Texture*> colors, const Texture* depth) {
@@ -34,6 +36,12 @@ void attach(const Framebuffer& target, std::initializer_list<const Texture*> col
     throw std::runtime_error("the OpenGL driver cannot draw into the buffers that a picture needs");
 }
 
+// Of the texture that was made last.
+void filter_linearly() {
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+}
+
 Targets make_targets(int width, int height, int scale) {
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
@@ -41,17 +49,21 @@ Targets make_targets(int width, int height, int scale) {
   if (std::max(w, h) > largest)
     throw std::invalid_argument("a picture of " + std::to_string(w) + " x " + std::to_string(h) + " pixels is larger than this driver's " +
                                 std::to_string(largest) + ": make it smaller");
-  Targets t{width, height, scale, {}, {}, {}, {}, {}, {}, make_framebuffer(), make_framebuffer(), make_framebuffer(), make_framebuffer()};
+  Targets t;
+  t.width = width, t.height = height, t.scale = scale;
+  for (Framebuffer* target : {&t.opaque, &t.occluded, &t.blurred, &t.lit, &t.resolved}) *target = make_framebuffer();
   t.albedo = make_texture(GL_RGBA8, w, h, GL_RGBA, GL_UNSIGNED_BYTE);
   t.normals = make_texture(GL_RGB10_A2, w, h, GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV);
   t.depth = make_texture(GL_DEPTH_COMPONENT32F, w, h, GL_DEPTH_COMPONENT, GL_FLOAT);
   t.occlusion = make_texture(GL_R8, (w + 1) / 2, (h + 1) / 2, GL_RED, GL_UNSIGNED_BYTE);
+  t.open_sky = make_texture(GL_R8, (w + 1) / 2, (h + 1) / 2, GL_RED, GL_UNSIGNED_BYTE);
+  filter_linearly();
   t.drawn = make_texture(GL_RGBA8, w, h, GL_RGBA, GL_UNSIGNED_BYTE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  filter_linearly();
   t.finished = make_texture(GL_RGBA8, width, height, GL_RGBA, GL_UNSIGNED_BYTE);
   attach(t.opaque, {&t.albedo, &t.normals}, &t.depth);
   attach(t.occluded, {&t.occlusion}, nullptr);
+  attach(t.blurred, {&t.open_sky}, nullptr);
   attach(t.lit, {&t.drawn}, &t.depth);
   attach(t.resolved, {&t.finished}, nullptr);
   return t;
@@ -60,6 +72,13 @@ Targets make_targets(int width, int height, int scale) {
 const ColorScale* scale_of(const Frame& frame, const Style& style) { return style.field >= 0 ? &frame.scales[style.scale] : nullptr; }
 
 std::optional<ClipPlane> clip_of(const Panel& panel, const Style& style) { return style.clipped ? panel.clip : std::nullopt; }
+
+Bounds bounds_of(const std::vector<Eigen::Vector3f>& points, float radius) {
+  Bounds bounds;
+  for (const Eigen::Vector3f& point : points)
+    if (point.allFinite()) bounds.add(point, radius);
+  return bounds;
+}
 
 // The curves in which the clip plane cuts the first translucent surface (a vessel), where they are closed: no open border crosses the
 // plane.
@@ -75,6 +94,42 @@ Outline cut_outline(const Frame& frame, const Panel& panel, SkinCache& skins) {
   return {};
 }
 
+// Pixels from the left lower corner; empty where width or height are 0.
+struct PixelBox {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+// Where the opaque things can be seen.
+PixelBox opaque_box(const Frame& frame, const Panel& panel, const Projection& projection) {
+  Eigen::Array2f low(1e9f, 1e9f), high(-1e9f, -1e9f);
+  const auto add = [&](const Bounds& bounds) {
+    if (bounds.empty()) return;
+    for (int corner = 0; corner < 8; ++corner) {
+      Eigen::Vector3f point;
+      for (int k = 0; k < 3; ++k) point[k] = corner >> k & 1 ? bounds.max[k] : bounds.min[k];
+      const Eigen::Vector4f clip = projection.projection * projection.view * point.homogeneous();
+      const bool ahead = clip.w() > 1e-6f * std::abs(clip.z());  // a corner behind the eye may be seen anywhere
+      const Eigen::Array2f ndc = ahead ? Eigen::Array2f(clip.head<2>() / clip.w()) : Eigen::Array2f::Zero();
+      low = low.min(ahead ? ndc : Eigen::Array2f(-1, -1));
+      high = high.max(ahead ? ndc : Eigen::Array2f(1, 1));
+    }
+  };
+  for (const SurfaceLayer& layer : panel.surfaces)
+    if (layer.style.opacity >= 1) add(bounds_of(frame.surfaces[layer.surface].vertices, frame.surfaces[layer.surface].thickness));
+  for (const ParticleLayer& layer : panel.particles)
+    add(bounds_of(frame.particles[layer.set].positions, section_reach * frame.particles[layer.set].radius));
+  for (const int mark : panel.marks) add(bounds_of({frame.marks[mark].position}, frame.marks[mark].radius));
+  if (low.x() > high.x()) return {};
+  const Eigen::Array2f size(static_cast<float>(projection.width), static_cast<float>(projection.height));
+  // Two pixels round it, as far as the picture goes.
+  const Eigen::Array2f from = (size * (0.5f * low + 0.5f) - 2).max(0.0f).min(size),
+                       to = (size * (0.5f * high + 0.5f) + 2).max(0.0f).min(size);
+  PixelBox box{static_cast<int>(from.x()), static_cast<int>(from.y()), 0, 0};
+  box.width = static_cast<int>(std::ceil(to.x())) - box.x;
+  box.height = static_cast<int>(std::ceil(to.y())) - box.y;
+  return box;
+}
+
 constexpr float occlusion_reach = 0.03f;  // of the visible height: how far a thing darkens its surroundings
 
 }  // namespace
@@ -86,14 +141,15 @@ struct PanelPainter::Parts {
   LinePainter lines;
   SectionPainter sections;
   SkinCache skins;
-  Program occlusion = make_program("screen.vert", "occlusion.frag"), light = make_program("screen.vert", "light.frag"),
+  Program occlusion = make_program("screen.vert", "occlusion.frag"), blur = make_program("screen.vert", "blur.frag"),
+          background = make_program("screen.vert", "background.frag"), light = make_program("screen.vert", "light.frag"),
           resolve = make_program("screen.vert", "resolve.frag");
   VertexArray screen = make_vertex_array();
   Targets targets;
 
   void draw_opaque(const Frame& frame, const Panel& panel, const Projection& projection);
-  void draw_occlusion(const Projection& projection, float reach);
-  void draw_light(const Frame& frame, const Projection& projection, bool occlusion_on);
+  void draw_occlusion(const Projection& projection, const PixelBox& box, float reach);
+  void draw_light(const Frame& frame, const Projection& projection, const PixelBox& box, bool occlusion_on);
   void draw_lines(const Frame& frame, const Panel& panel, const Projection& projection);
   void draw_glass(const Frame& frame, const Panel& panel, const Projection& projection);
   void draw_resolved(const DrawSettings& settings);
@@ -114,8 +170,8 @@ void PanelPainter::Parts::draw_opaque(const Frame& frame, const Panel& panel, co
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   for (const SurfaceLayer& layer : panel.surfaces)
     if (layer.style.opacity >= 1)
-      surfaces.draw(skins.drawn(frame.surfaces[layer.surface], layer.style.field), scale_of(frame, layer.style), layer.style.color,
-                    projection, clip_of(panel, layer.style));
+      surfaces.draw(skins.drawn(frame.surfaces[layer.surface], layer.style.field, projection.pixels_per_metre),
+                    scale_of(frame, layer.style), layer.style.color, projection, clip_of(panel, layer.style));
   const Outline outline = panel.clip ? cut_outline(frame, panel, skins) : Outline();
   for (const ParticleLayer& layer : panel.particles) {
     const auto clip = clip_of(panel, layer.style);
@@ -137,10 +193,12 @@ void PanelPainter::Parts::draw_opaque(const Frame& frame, const Panel& panel, co
   particles.draw(balls, ParticleShape::sphere, projection, std::nullopt);
 }
 
-void PanelPainter::Parts::draw_occlusion(const Projection& projection, float reach) {
+void PanelPainter::Parts::draw_occlusion(const Projection& projection, const PixelBox& box, float reach) {
   glBindFramebuffer(GL_FRAMEBUFFER, targets.occluded);
   glViewport(0, 0, (projection.width + 1) / 2, (projection.height + 1) / 2);
   glDisable(GL_DEPTH_TEST);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(box.x / 2 - 3, box.y / 2 - 3, box.width / 2 + 8, box.height / 2 + 8);  // and what the blur reads round it
   glUseProgram(occlusion);
   set(occlusion, "depth", targets.depth, 0);
   set(occlusion, "normals", targets.normals, 1);
@@ -153,21 +211,31 @@ void PanelPainter::Parts::draw_occlusion(const Projection& projection, float rea
   // Orthographic: pixels a metre everywhere; perspective: at one metre before the eye.
   set(occlusion, "pixels_per_metre", 0.5f * static_cast<float>(projection.height) * projection.projection(1, 1));
   draw_screen(screen);
+  glBindFramebuffer(GL_FRAMEBUFFER, targets.blurred);
+  glUseProgram(blur);
+  set(blur, "occlusion", targets.occlusion, 0);
+  draw_screen(screen);
+  glDisable(GL_SCISSOR_TEST);
 }
 
-void PanelPainter::Parts::draw_light(const Frame& frame, const Projection& projection, bool occlusion_on) {
+void PanelPainter::Parts::draw_light(const Frame& frame, const Projection& projection, const PixelBox& box, bool occlusion_on) {
   glBindFramebuffer(GL_FRAMEBUFFER, targets.lit);
   glViewport(0, 0, projection.width, projection.height);
   glDisable(GL_DEPTH_TEST);
+  glUseProgram(background);
+  set(background, "size", Eigen::Vector2f(static_cast<float>(projection.width), static_cast<float>(projection.height)));
+  set(background, "background_top", frame.background_top);
+  set(background, "background_bottom", frame.background_bottom);
+  draw_screen(screen);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(box.x, box.y, box.width, box.height);
   glUseProgram(light);
   set(light, "albedo", targets.albedo, 0);
   set(light, "normals", targets.normals, 1);
-  set(light, "occlusion", targets.occlusion, 2);
+  set(light, "occlusion", targets.open_sky, 2);
   set(light, "occlusion_on", static_cast<int>(occlusion_on));
-  set(light, "size", Eigen::Vector2f(static_cast<float>(projection.width), static_cast<float>(projection.height)));
-  set(light, "background_top", frame.background_top);
-  set(light, "background_bottom", frame.background_bottom);
   draw_screen(screen);
+  glDisable(GL_SCISSOR_TEST);
   glEnable(GL_DEPTH_TEST);
 }
 
@@ -178,7 +246,7 @@ void PanelPainter::Parts::draw_lines(const Frame& frame, const Panel& panel, con
   for (const SurfaceLayer& layer : panel.surfaces) {
     const Surface& surface = frame.surfaces[layer.surface];
     const Color dark = 0.35f * layer.style.color;
-    if (layer.rim) lines.draw(segments(skins.rim(surface), dark), width(2), lift, false, projection);
+    if (layer.rim) lines.draw(segments(skins.rim(surface, projection.pixels_per_metre), dark), width(2), lift, false, projection);
     if (layer.section && panel.clip) {
       const auto cut = section(surface.vertices, surface.triangles, *panel.clip);
       const float thick = surface.thickness * projection.pixels_per_metre;  // the cut skin: its own colour within a dark edge
@@ -196,7 +264,8 @@ void PanelPainter::Parts::draw_glass(const Frame& frame, const Panel& panel, con
   Glass all;
   for (const SurfaceLayer& layer : panel.surfaces)
     if (layer.style.opacity < 1)
-      all.add(skins.drawn(frame.surfaces[layer.surface], layer.style.field), layer.style, scale_of(frame, layer.style));
+      all.add(skins.drawn(frame.surfaces[layer.surface], layer.style.field, projection.pixels_per_metre), layer.style,
+              scale_of(frame, layer.style));
   glass.draw(all, projection, panel.clip);
 }
 
@@ -213,13 +282,11 @@ void PanelPainter::Parts::draw_resolved(const DrawSettings& settings) {
 
 Bounds panel_bounds(const Frame& frame, const Panel& panel) {
   Bounds bounds;
-  const auto add = [&](const std::vector<Eigen::Vector3f>& points, float radius) {
-    for (const Eigen::Vector3f& point : points)
-      if (point.allFinite()) bounds.add(point, radius);
-  };
-  for (const ParticleLayer& layer : panel.particles) add(frame.particles[layer.set].positions, frame.particles[layer.set].radius);
-  for (const SurfaceLayer& layer : panel.surfaces) add(frame.surfaces[layer.surface].vertices, frame.surfaces[layer.surface].thickness);
-  for (const LineLayer& layer : panel.lines) add(frame.lines[layer.line].points, 0.5f * layer.metres);
+  for (const ParticleLayer& layer : panel.particles)
+    bounds.add(bounds_of(frame.particles[layer.set].positions, frame.particles[layer.set].radius));
+  for (const SurfaceLayer& layer : panel.surfaces)
+    bounds.add(bounds_of(frame.surfaces[layer.surface].vertices, frame.surfaces[layer.surface].thickness));
+  for (const LineLayer& layer : panel.lines) bounds.add(bounds_of(frame.lines[layer.line].points, 0.5f * layer.metres));
   for (const int mark : panel.marks) bounds.add(frame.marks[mark].position, frame.marks[mark].radius);
   return bounds;
 }
@@ -235,12 +302,13 @@ Image PanelPainter::draw(const Frame& frame, const Panel& panel, int width, int 
   if (targets.width != width || targets.height != height || targets.scale != scale) targets = make_targets(width, height, scale);
   const Projection projection = panel_projection(frame, panel, width * scale, height * scale, reserved_right * scale);
   parts_->draw_opaque(frame, panel, projection);
+  const PixelBox box = opaque_box(frame, panel, projection);
   const float visible_height = static_cast<float>(projection.height) / projection.pixels_per_metre;
-  if (settings.ambient_occlusion) parts_->draw_occlusion(projection, occlusion_reach * visible_height);
-  parts_->draw_light(frame, projection, settings.ambient_occlusion);
+  if (settings.ambient_occlusion) parts_->draw_occlusion(projection, box, occlusion_reach * visible_height);
+  parts_->draw_light(frame, projection, box, settings.ambient_occlusion);
   parts_->draw_lines(frame, panel, projection);
   parts_->draw_glass(frame, panel, projection);
-  parts_->draw_resolved(settings);
+  if (scale > 1 || settings.smooth_edges) parts_->draw_resolved(settings);  // else the lit picture is read as it is
 
   std::vector<std::uint8_t> upside_down(4 * static_cast<std::size_t>(width) * height);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);

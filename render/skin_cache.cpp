@@ -8,8 +8,7 @@ namespace {
 constexpr int most_levels = 3;
 
 bool same_shape(const Surface& a, const Surface& b) {
-  return a.thickness == b.thickness && a.smoothing == b.smoothing && a.fairing == b.fairing && a.vertices == b.vertices &&
-         a.triangles == b.triangles;
+  return a.thickness == b.thickness && a.fairing == b.fairing && a.vertices == b.vertices && a.triangles == b.triangles;
 }
 
 // Moves the first that fits to the front; false where there is none.
@@ -29,8 +28,20 @@ void put_in_front(std::list<T>& list, T item, std::size_t kept) {
 
 }  // namespace
 
-std::shared_ptr<const SkinCache::Levels> SkinCache::levels_of(const Surface& surface) {
-  const auto count = static_cast<std::size_t>(std::clamp(surface.smoothing, 0, most_levels)) + 1;
+int levels_needed(const Surface& surface, float pixels_per_metre) {
+  const int most = std::clamp(surface.smoothing, 0, most_levels);
+  if (most == 0 || surface.triangles.empty()) return most;
+  double sum = 0;
+  for (const auto& triangle : surface.triangles)
+    for (std::size_t k = 0; k < 3; ++k) sum += (surface.vertices[triangle[k]] - surface.vertices[triangle[(k + 1) % 3]]).norm();
+  double edge = sum / (3 * static_cast<double>(surface.triangles.size())) * pixels_per_metre;
+  int levels = 0;
+  for (; levels < most && edge > longest_edge; edge /= 2) ++levels;
+  return levels;
+}
+
+std::shared_ptr<const SkinCache::Levels> SkinCache::levels_of(const Surface& surface, int smoothing) {
+  const std::size_t count = static_cast<std::size_t>(smoothing) + 1;
   const auto fits = [&](const std::shared_ptr<const Levels>& levels) {
     return levels->each.size() == count && levels->followed.size() == surface.vertices.size() &&
            levels->each.front().triangles == surface.triangles;
@@ -50,10 +61,10 @@ std::shared_ptr<const SkinCache::Levels> SkinCache::levels_of(const Surface& sur
   return levels_.front();
 }
 
-SkinCache::Entry SkinCache::make_entry(const Surface& surface) {
+SkinCache::Entry SkinCache::make_entry(const Surface& surface, int smoothing) {
   Entry entry;
-  entry.surface = {surface.name, surface.vertices, surface.triangles, {}, surface.thickness, surface.smoothing, 0, surface.fairing};
-  entry.levels = levels_of(surface);
+  entry.surface = {surface.name, surface.vertices, surface.triangles, {}, surface.thickness, smoothing, 0, surface.fairing};
+  entry.levels = levels_of(surface, smoothing);
   DrawnMesh middle;
   middle.positions = faired(surface.vertices, entry.levels->followed, surface.fairing);
   for (std::size_t level = 0; level + 1 < entry.levels->each.size(); ++level)
@@ -73,14 +84,14 @@ SkinCache::Entry SkinCache::make_entry(const Surface& surface) {
   return entry;
 }
 
-SkinCache::Entry& SkinCache::entry_of(const Surface& surface) {
-  if (!to_front(entries_, [&](const Entry& entry) { return same_shape(entry.surface, surface); }))
-    put_in_front(entries_, make_entry(surface), kept);
+SkinCache::Entry& SkinCache::entry_of(const Surface& surface, int smoothing) {
+  if (!to_front(entries_, [&](const Entry& entry) { return entry.surface.smoothing == smoothing && same_shape(entry.surface, surface); }))
+    put_in_front(entries_, make_entry(surface, smoothing), kept);
   return entries_.front();
 }
 
-const DrawnMesh& SkinCache::drawn(const Surface& surface, int field) {
-  Entry& entry = entry_of(surface);
+const DrawnMesh& SkinCache::drawn(const Surface& surface, int field, float pixels_per_metre) {
+  Entry& entry = entry_of(surface, levels_needed(surface, pixels_per_metre));
   if (field < 0) {
     entry.skin.mesh.values.resize(entry.skin.mesh.positions.size(), 0.0f);
     return entry.skin.mesh;
@@ -97,8 +108,10 @@ const DrawnMesh& SkinCache::drawn(const Surface& surface, int field) {
   return entry.skin.mesh;
 }
 
-const std::vector<std::array<Eigen::Vector3f, 2>>& SkinCache::rim(const Surface& surface) { return entry_of(surface).rim; }
+const std::vector<std::array<Eigen::Vector3f, 2>>& SkinCache::rim(const Surface& surface, float pixels_per_metre) {
+  return entry_of(surface, levels_needed(surface, pixels_per_metre)).rim;
+}
 
-const Border& SkinCache::border(const Surface& surface) { return entry_of(surface).levels->each.front().border; }
+const Border& SkinCache::border(const Surface& surface) { return levels_of(surface, 0)->each.front().border; }
 
 }  // namespace render

@@ -16,10 +16,11 @@ namespace render {
 class SkinCache {
  public:
   static constexpr std::size_t kept = 24;  // a comparison of three runs shows 15
-  // What is drawn for a surface: its middle, faired and smoothed, with its skin on both sides. `field` < 0: the values mean nothing.
-  const DrawnMesh& drawn(const Surface& surface, int field);
+  // What is drawn for a surface: its middle, faired and smoothed, with its skin on both sides. `field` < 0: the values mean nothing. As
+  // many of its levels of smoothing are used as its edges' mean length in pixels asks for.
+  const DrawnMesh& drawn(const Surface& surface, int field, float pixels_per_metre);
   // The outline of a skin: segments half its thickness beyond the border of its middle.
-  const std::vector<std::array<Eigen::Vector3f, 2>>& rim(const Surface& surface);
+  const std::vector<std::array<Eigen::Vector3f, 2>>& rim(const Surface& surface, float pixels_per_metre);
   // The border of the surface's own triangles.
   const Border& border(const Surface& surface);
 
@@ -30,18 +31,22 @@ class SkinCache {
     Followed followed;
   };
   struct Entry {
-    Surface surface;            // without its fields
+    Surface surface;            // without its fields; its smoothing is what was used
     std::vector<float> values;  // the field that skin.mesh.values shows; empty: none yet
     std::shared_ptr<const Levels> levels;
     Skin skin;
     std::vector<std::array<Eigen::Vector3f, 2>> rim;
   };
-  std::shared_ptr<const Levels> levels_of(const Surface& surface);
-  Entry make_entry(const Surface& surface);
-  Entry& entry_of(const Surface& surface);
+  std::shared_ptr<const Levels> levels_of(const Surface& surface, int smoothing);
+  Entry make_entry(const Surface& surface, int smoothing);
+  Entry& entry_of(const Surface& surface, int smoothing);
 
   std::list<Entry> entries_;  // the one used last in front
   std::list<std::shared_ptr<const Levels>> levels_;
 };
+
+// The levels of smoothing, at most the surface's own, after which its edges are `longest_edge` pixels or less in the mean.
+inline constexpr float longest_edge = 8;
+int levels_needed(const Surface& surface, float pixels_per_metre);
 
 }  // namespace render

@@ -170,8 +170,8 @@ Surface bent_surface(float height) {
 TEST(SkinCache, takes_the_chosen_field) {
   SkinCache skins;
   const Surface surface = bent_surface(0);
-  EXPECT_EQ(skins.drawn(surface, -1).values.size(), skins.drawn(surface, 1).positions.size());
-  const DrawnMesh& drawn = skins.drawn(surface, 1);
+  EXPECT_EQ(skins.drawn(surface, -1, 1000).values.size(), skins.drawn(surface, 1, 1000).positions.size());
+  const DrawnMesh& drawn = skins.drawn(surface, 1, 1000);
   EXPECT_TRUE(std::all_of(drawn.values.begin(), drawn.values.end(), [](float v) { return v == 5.0f; }));
   EXPECT_TRUE(closed(drawn));
 }
@@ -182,36 +182,46 @@ TEST(SkinCache, remembers_nothing_that_changes_what_is_drawn) {
   for (const float height : {0.0f, 0.1f, 0.2f, 0.1f, 0.0f})
     for (const int field : {0, 1, -1, 0}) {
       const Surface surface = bent_surface(height);
-      const DrawnMesh& drawn = used.drawn(surface, field);
+      const DrawnMesh& drawn = used.drawn(surface, field, 1000);
       SkinCache fresh;
-      const DrawnMesh& expected = fresh.drawn(surface, field);
+      const DrawnMesh& expected = fresh.drawn(surface, field, 1000);
       EXPECT_EQ(drawn.positions, expected.positions);
       EXPECT_EQ(drawn.normals, expected.normals);
       EXPECT_EQ(drawn.triangles, expected.triangles);
       if (field >= 0) {
         EXPECT_EQ(drawn.values, expected.values);
       }
-      EXPECT_EQ(used.rim(surface), fresh.rim(surface));
+      EXPECT_EQ(used.rim(surface, 1000), fresh.rim(surface, 1000));
       if (height == 0.1f)
-        for (std::size_t k = 0; k < 2 * SkinCache::kept; ++k) used.drawn(bent_surface(1.0f + static_cast<float>(k)), 0);
+        for (std::size_t k = 0; k < 2 * SkinCache::kept; ++k) used.drawn(bent_surface(1.0f + static_cast<float>(k)), 0, 1000);
     }
+}
+
+// Edges of 1.14 in the mean (two sides of 1, one of 1.41).
+TEST(SkinCache, smooths_as_far_as_the_picture_can_show) {
+  const Surface surface = bent_surface(0);
+  for (const auto& [pixels, levels] : {std::pair{1.0f, 0}, {6.9f, 0}, {7.1f, 1}, {13.9f, 1}, {14.3f, 2}, {1000.0f, 2}}) {
+    EXPECT_EQ(levels_needed(surface, pixels), levels) << pixels;
+    SkinCache skins;
+    EXPECT_EQ(skins.rim(surface, pixels).size(), 16u << levels);
+  }
 }
 
 // Another field of the same shape, other values of the same field, another mesh of the same points.
 TEST(SkinCache, sees_every_change) {
   SkinCache skins;
   Surface surface = bent_surface(0.1f);
-  const std::vector<float> first = skins.drawn(surface, 0).values;
+  const std::vector<float> first = skins.drawn(surface, 0, 1000).values;
   surface.fields[0][12] += 1;
-  EXPECT_NE(skins.drawn(surface, 0).values, first);
+  EXPECT_NE(skins.drawn(surface, 0, 1000).values, first);
   surface.fields[0][12] -= 1;
-  EXPECT_EQ(skins.drawn(surface, 0).values, first);
+  EXPECT_EQ(skins.drawn(surface, 0, 1000).values, first);
   surface.averaging = 0;
-  EXPECT_NE(skins.drawn(surface, 0).values, first);
+  EXPECT_NE(skins.drawn(surface, 0, 1000).values, first);
   EXPECT_EQ(skins.border(surface).size(), 16u);
   surface.triangles.pop_back();  // of the corner's square: one edge of the border gone, two new
   EXPECT_EQ(skins.border(surface).size(), 17u);
-  EXPECT_EQ(skins.rim(surface).size(), 4 * 17u);  // split in two at each level
+  EXPECT_EQ(skins.rim(surface, 1000).size(), 4 * 17u);  // split in two at each level
 }
 
 }  // namespace
