@@ -82,7 +82,7 @@ LinePainter::LinePainter() : program_(make_program("line.vert", "line.frag")), v
   glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), reinterpret_cast<void*>(offsetof(Vertex, across)));
 }
 
-void LinePainter::draw(const std::vector<Segment>& all, float width, float lift, bool on_top, const Projection& projection) {
+void LinePainter::draw(const std::vector<Segment>& all, float width, float lift, Depth depth, const Projection& projection) {
   std::vector<Vertex> vertices;
   vertices.reserve(6 * all.size());
   for (const Segment& segment : all) add_quad(segment, 0.5f * width, lift, projection, vertices);
@@ -92,11 +92,13 @@ void LinePainter::draw(const std::vector<Segment>& all, float width, float lift,
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(), GL_STREAM_DRAW);
   glUseProgram(program_);
   set(program_, "half_width", 0.5f * width);
-  if (on_top) glDisable(GL_DEPTH_TEST);
+  if (depth == Depth::on_top) glDisable(GL_DEPTH_TEST);
+  if (depth == Depth::over) glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(vertices.size()));
   glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
   glEnable(GL_DEPTH_TEST);
 }
 

@@ -23,8 +23,11 @@ std::vector<Segment> segments(const std::vector<std::array<Eigen::Vector3f, 2>>&
 class LinePainter {
  public:
   LinePainter();
+  // Hidden by what is nearer; `over` the same, but leaves the depths as they are, for a second line along a wider one: where segments of
+  // one colour meet, no seam shows; on_top: never hidden.
+  enum class Depth { hidden, over, on_top };
   // width in pixels; `lift` (m) moves the lines towards the eye, so that a line on a surface is not half sunk in it.
-  void draw(const std::vector<Segment>& segments, float width, float lift, bool on_top, const Projection& projection);
+  void draw(const std::vector<Segment>& segments, float width, float lift, Depth depth, const Projection& projection);
 
  private:
   Program program_;

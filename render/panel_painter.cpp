@@ -243,20 +243,23 @@ void PanelPainter::Parts::draw_lines(const Frame& frame, const Panel& panel, con
   const float at_1080 = static_cast<float>(projection.height) / 1080;  // widths scale with the picture
   const auto width = [&](float pixels) { return std::max(pixels * at_1080, 1.2f * static_cast<float>(targets.scale)); };
   const float lift = 4 / projection.pixels_per_metre;
+  using Depth = LinePainter::Depth;
   for (const SurfaceLayer& layer : panel.surfaces) {
     const Surface& surface = frame.surfaces[layer.surface];
     const Color dark = 0.35f * layer.style.color;
-    if (layer.rim) lines.draw(segments(skins.rim(surface, projection.pixels_per_metre), dark), width(2), lift, false, projection);
+    if (layer.rim) lines.draw(segments(skins.rim(surface, projection.pixels_per_metre), dark), width(2), lift, Depth::hidden, projection);
     if (layer.section && panel.clip) {
-      const auto cut = section(surface.vertices, surface.triangles, *panel.clip);
+      const DrawnMesh& middle = skins.middle(surface, projection.pixels_per_metre);
+      const auto cut = section(middle.positions, middle.triangles, *panel.clip);
       const float thick = surface.thickness * projection.pixels_per_metre;  // the cut skin: its own colour within a dark edge
-      lines.draw(segments(cut, dark), thick + width(3), lift, false, projection);
-      if (thick > 2) lines.draw(segments(cut, layer.style.color), thick, 1.5f * lift, false, projection);
+      lines.draw(segments(cut, dark), thick + width(3), lift, Depth::hidden, projection);
+      if (thick > 2) lines.draw(segments(cut, layer.style.color), thick, 1.5f * lift, Depth::over, projection);
     }
   }
   for (const LineLayer& layer : panel.lines) {
     const float pixels = layer.metres > 0 ? layer.metres * projection.pixels_per_metre : width(layer.pixels);
-    lines.draw(segments(frame.lines[layer.line], layer.style, scale_of(frame, layer.style)), pixels, lift, layer.on_top, projection);
+    lines.draw(segments(frame.lines[layer.line], layer.style, scale_of(frame, layer.style)), pixels, lift,
+               layer.on_top ? Depth::on_top : Depth::hidden, projection);
   }
 }
 

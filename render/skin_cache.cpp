@@ -65,7 +65,7 @@ SkinCache::Entry SkinCache::make_entry(const Surface& surface, int smoothing) {
   Entry entry;
   entry.surface = {surface.name, surface.vertices, surface.triangles, {}, surface.thickness, smoothing, 0, surface.fairing};
   entry.levels = levels_of(surface, smoothing);
-  DrawnMesh middle;
+  DrawnMesh& middle = entry.middle;
   middle.positions = faired(surface.vertices, entry.levels->followed, surface.fairing);
   for (std::size_t level = 0; level + 1 < entry.levels->each.size(); ++level)
     middle.positions = subdivided(middle.positions, entry.levels->each[level]);
@@ -106,6 +106,10 @@ const DrawnMesh& SkinCache::drawn(const Surface& surface, int field, float pixel
   entry.skin.mesh.values.clear();
   for (const std::int32_t from : entry.skin.source) entry.skin.mesh.values.push_back(values[static_cast<std::size_t>(from)]);
   return entry.skin.mesh;
+}
+
+const DrawnMesh& SkinCache::middle(const Surface& surface, float pixels_per_metre) {
+  return entry_of(surface, levels_needed(surface, pixels_per_metre)).middle;
 }
 
 const std::vector<std::array<Eigen::Vector3f, 2>>& SkinCache::rim(const Surface& surface, float pixels_per_metre) {

@@ -19,6 +19,8 @@ class SkinCache {
   // What is drawn for a surface: its middle, faired and smoothed, with its skin on both sides. `field` < 0: the values mean nothing. As
   // many of its levels of smoothing are used as its edges' mean length in pixels asks for.
   const DrawnMesh& drawn(const Surface& surface, int field, float pixels_per_metre);
+  // The skin's middle: positions and triangles alone.
+  const DrawnMesh& middle(const Surface& surface, float pixels_per_metre);
   // The outline of a skin: segments half its thickness beyond the border of its middle.
   const std::vector<std::array<Eigen::Vector3f, 2>>& rim(const Surface& surface, float pixels_per_metre);
   // The border of the surface's own triangles.
@@ -34,6 +36,7 @@ class SkinCache {
     Surface surface;            // without its fields; its smoothing is what was used
     std::vector<float> values;  // the field that skin.mesh.values shows; empty: none yet
     std::shared_ptr<const Levels> levels;
+    DrawnMesh middle;
     Skin skin;
     std::vector<std::array<Eigen::Vector3f, 2>> rim;
   };

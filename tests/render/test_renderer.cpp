@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <stdexcept>
 
 #include "render/example_frame.h"
@@ -219,6 +221,43 @@ TEST(Renderer, a_skin_has_thickness_from_the_side) {
   const Seen seen = view_of(frame, small);
   EXPECT_GT(pixel_at(image, seen, {0, 0, 0.0004f}).x(), pixel_at(image, seen, {0, 0, 0.0004f}).y() + 50);
   EXPECT_TRUE(is_background(pixel_at(image, seen, {0, 0, 0.0007f})));
+}
+
+// A bent strip, cut across: along its middle the cut shows the strip's own colour, also where its pieces meet at an angle, and nowhere the
+// dark of its edge.
+TEST(Renderer, a_cut_skin_shows_one_colour_without_seams) {
+  for (int direction = 1; direction <= 12; ++direction) {  // depths round otherwise in each
+    Frame frame = plain_frame();
+    const Eigen::Matrix3f turn =
+        Eigen::AngleAxisf(0.5f * static_cast<float>(direction), Eigen::Vector3f(1, 2, 3).normalized()).toRotationMatrix();
+    const Eigen::Vector3f shift(0.0013f, -0.0007f, 0.0211f);
+    Surface strip{"leaflet", {}, {}, {}};
+    const auto height = [](int i) { return 0.0012f * std::sin(0.9f * static_cast<float>(i)); };
+    for (int i = 0; i <= 12; ++i)
+      for (const float z : {-0.002f, 0.002f})
+        strip.vertices.emplace_back(shift + turn * Eigen::Vector3f(-0.0036f + 0.0006f * static_cast<float>(i), height(i), z));
+    for (int i = 0; i < 12; ++i) {
+      strip.triangles.push_back({2 * i, 2 * i + 2, 2 * i + 1});
+      strip.triangles.push_back({2 * i + 1, 2 * i + 2, 2 * i + 3});
+    }
+    strip.thickness = 0.0008f;
+    frame.surfaces = {strip};
+    Panel& panel = frame.panels[0];
+    panel.clip = ClipPlane{shift, turn.col(2)};
+    panel.camera.target = shift;
+    panel.camera.backward = turn.col(2);
+    panel.camera.up = turn.col(1);
+    const Color color(0.9f, 0.8f, 0.6f);
+    panel.surfaces = {{0, {-1, -1, color}, false, true}};
+    const Image image = renderer().draw(frame, small);
+    const Seen seen = view_of(frame, small);
+    for (int i = 0; i < 12; ++i)
+      for (int k = 0; k <= 10; ++k) {
+        const float part = 0.1f * static_cast<float>(k);
+        const Eigen::Vector3f place(-0.0036f + 0.0006f * (static_cast<float>(i) + part), (1 - part) * height(i) + part * height(i + 1), 0);
+        EXPECT_LT((pixel_at(image, seen, shift + turn * place).cast<float>() - 255 * color).cwiseAbs().maxCoeff(), 6) << i << " + " << part;
+      }
+  }
 }
 
 TEST(Renderer, occlusion_darkens_a_corner_and_leaves_the_open_alone) {
