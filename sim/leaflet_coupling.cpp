@@ -145,21 +145,25 @@ SymmetricMatrix matrix_for_multigrid(const Workspace<D>& work) {
       }
   }
   std::stable_sort(entries.begin(), entries.end(), [](const Entry& p, const Entry& q) { return p.row < q.row; });
-  const std::size_t rows = work.matrix.rows();
-  a.start.assign(rows + 1, 0);
-  a.column.reserve(work.matrix.column.size() + entries.size());
-  a.value.reserve(work.matrix.column.size() + entries.size());
-  std::size_t e = 0;
-  for (std::size_t u = 0; u < rows; ++u) {
-    for (std::int64_t k = work.matrix.start[u]; k < work.matrix.start[u + 1]; ++k) {
-      a.column.push_back(work.matrix.column[k]);
-      a.value.push_back(work.matrix.value[k]);
+  const Index rows = static_cast<Index>(work.matrix.rows());
+  std::vector<std::size_t> first(rows + 1, entries.size());  // of each row's further entries
+  for (std::size_t e = entries.size(); e-- > 0;) first[entries[e].row] = e;
+  for (Index u = rows; u-- > 0;) first[u] = std::min(first[u], first[u + 1]);
+  a.start.resize(rows + 1);
+  for (Index u = 0; u <= rows; ++u) a.start[u] = work.matrix.start[u] + static_cast<std::int64_t>(first[u]);
+  a.column.resize(work.matrix.column.size() + entries.size());
+  a.value.resize(a.column.size());
+#pragma omp parallel for schedule(static)
+  for (Index u = 0; u < rows; ++u) {
+    std::int64_t to = a.start[u];
+    for (std::int64_t k = work.matrix.start[u]; k < work.matrix.start[u + 1]; ++k, ++to) {
+      a.column[to] = work.matrix.column[k];
+      a.value[to] = work.matrix.value[k];
     }
-    for (; e < entries.size() && entries[e].row == static_cast<std::int32_t>(u); ++e) {
-      a.column.push_back(entries[e].column);
-      a.value.push_back(entries[e].value);
+    for (std::size_t e = first[u]; e < first[u + 1]; ++e, ++to) {
+      a.column[to] = entries[e].column;
+      a.value[to] = entries[e].value;
     }
-    a.start[u + 1] = static_cast<std::int64_t>(a.column.size());
   }
   return a;
 }

@@ -1,6 +1,7 @@
 // Symmetric positive (semi-)definite sparse systems: conjugate gradients with an aggregation multigrid or Jacobi preconditioner.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -27,24 +28,7 @@ struct SolveReport {
   bool converged = true;
 };
 
-// One coarse level: unknowns of the finer level gathered into aggregates; piecewise-constant prolongation. Single precision.
-struct MultigridLevel {
-  std::vector<std::int32_t> aggregate;  // finer unknown -> this level's unknown; -1 = not represented
-  std::vector<std::int64_t> start;
-  std::vector<std::int32_t> column;
-  std::vector<float> value, diagonal, inverse_diagonal;
-  std::vector<float> x, b, r;  // scratch
-};
-struct Multigrid {
-  std::vector<MultigridLevel> levels;  // [0] is the finest, a float copy of the matrix
-  std::vector<double> coarse_inverse;  // dense pseudo-inverse factor of the coarsest level (row major)
-};
-
-// Aggregation multigrid: greedy aggregates over strong links (at least half the row's strongest), damped Jacobi (0.7) before and after,
-// coarse corrections over-relaxed by 1.5 (numerics-fluid §3). Deterministic.
-Multigrid build_multigrid(const SymmetricMatrix& matrix);
-// z = M r, one V(1,1) cycle; symmetric.
-void apply_multigrid(Multigrid& multigrid, std::span<const double> r, std::span<double> z);
+struct Multigrid;  // multigrid.h
 
 // Scratch of the conjugate gradients, kept between calls.
 struct ConjugateGradientScratch {
@@ -56,5 +40,15 @@ struct ConjugateGradientScratch {
 SolveReport conjugate_gradient(const SymmetricMatrix& matrix, std::span<const double> b, std::span<double> x, double tolerance,
                                int max_iterations, Multigrid* multigrid, ConjugateGradientScratch& scratch,
                                const std::function<void(std::span<const double>, std::span<double>)>& add_to_product = {});
+
+// The same for D right-hand sides at once, each with its own step lengths, Jacobi preconditioned: the matrix is read once for all. x, b:
+// one vector a row. The report holds the sum of the iterations and the largest residual.
+template <int D>
+struct VectorScratch {
+  std::vector<Eigen::Matrix<double, D, 1>> r, p, q;
+};
+template <int D>
+SolveReport conjugate_gradient(const SymmetricMatrix& matrix, std::span<const Eigen::Matrix<double, D, 1>> b,
+                               std::span<Eigen::Matrix<double, D, 1>> x, double tolerance, int max_iterations, VectorScratch<D>& scratch);
 
 }  // namespace sim

@@ -3,7 +3,10 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
+#include <memory>
 
 namespace sim {
 
@@ -30,7 +33,7 @@ void lay_out(CellGrid<D>& grid, std::span<const Vector<D>> position, const Domai
     low = low.cwiseMin(x);
     high = high.cwiseMax(x);
   }
-  grid.cell = 0.5 * radius;
+  grid.cell = radius;
   for (int k = 0; k < D; ++k) {
     grid.periodic[k] = domain.present && domain.periodic[k];
     if (grid.periodic[k]) {
@@ -84,39 +87,115 @@ void fill_cells(CellGrid<D>& grid, std::span<const Vector<D>> position, const Do
 
 namespace {
 
-// Calls visit(first, last) for each contiguous run of grid.row that may hold neighbours of x.
-template <int D, class Visit>
-void visit_runs(const CellGrid<D>& grid, const Vector<D>& x, double radius, Visit&& visit) {
-  const std::array<int, D> c = coordinates(grid, x);
-  std::array<int, D> low, high;
-  for (int k = 0; k < D; ++k) {
-    const int reach = static_cast<int>(std::ceil(radius / grid.edge[k] - 1e-9));
-    low[k] = c[k] - reach;
-    high[k] = c[k] + reach;
-    if (grid.periodic[k] && high[k] - low[k] + 1 > grid.cells[k]) {
-      low[k] = 0;
-      high[k] = grid.cells[k] - 1;
-    }
-    if (!grid.periodic[k]) {
-      low[k] = std::max(low[k], 0);
-      high[k] = std::min(high[k], grid.cells[k] - 1);
-    }
+// Cells along axis k that may hold neighbours of what lies in cell c, each once.
+template <int D>
+void cells_around(const CellGrid<D>& grid, int c, int k, std::vector<int>& around) {
+  around.clear();
+  const int cells = grid.cells[k];
+  for (int i = c - 1; i <= c + 1; ++i) {
+    const int wrapped = grid.periodic[k] ? (i + cells) % cells : i;
+    if (wrapped >= 0 && wrapped < cells && std::find(around.begin(), around.end(), wrapped) == around.end()) around.push_back(wrapped);
   }
-  auto wrap = [&](int i, int k) { return grid.periodic[k] ? ((i % grid.cells[k]) + grid.cells[k]) % grid.cells[k] : i; };
-  auto row_of_cells = [&](std::int32_t base) {
-    if (!grid.periodic[0] || (low[0] >= 0 && high[0] < grid.cells[0])) {
-      visit(grid.start[base + low[0]], grid.start[base + high[0] + 1]);
-      return;
-    }
-    for (int i = low[0]; i <= high[0]; ++i) visit(grid.start[base + wrap(i, 0)], grid.start[base + wrap(i, 0) + 1]);
-  };
-  if constexpr (D == 2) {
-    for (int j = low[1]; j <= high[1]; ++j) row_of_cells(wrap(j, 1) * grid.cells[0]);
-  } else {
-    for (int k = low[2]; k <= high[2]; ++k)
-      for (int j = low[1]; j <= high[1]; ++j) row_of_cells((wrap(k, 2) * grid.cells[1] + wrap(j, 1)) * grid.cells[0]);
-  }
+  std::sort(around.begin(), around.end());
 }
+
+// What lies in a cell and around it, copied together: the particles of the cell are all compared with the same candidates.
+template <int D>
+struct Candidates {
+  std::array<std::vector<double>, D> x;
+  std::vector<std::int32_t> row;
+  std::vector<std::uint8_t> is_fluid;
+  std::vector<double> square;      // of the distance from the particle in turn, m²
+  std::vector<std::uint8_t> near;  // 1 where it is a neighbour; filled up with zeros to whole words
+  std::size_t own = 0;             // where the cell's own particles begin
+  std::array<std::vector<int>, D> around;
+
+  void gather(const CellGrid<D>& grid, std::span<const Vector<D>> position, std::span<const std::uint8_t> fluid, std::size_t cell) {
+    std::array<int, D> c;
+    std::size_t rest = cell;
+    for (int k = 0; k < D; ++k) {
+      c[k] = static_cast<int>(rest % static_cast<std::size_t>(grid.cells[k]));
+      rest /= static_cast<std::size_t>(grid.cells[k]);
+      cells_around(grid, c[k], k, around[k]);
+    }
+    row.clear();
+    const auto add = [&](std::array<int, D> at) {
+      const std::int32_t one = flat<D>(grid, at);
+      if (static_cast<std::size_t>(one) == cell) own = row.size();
+      row.insert(row.end(), grid.row.begin() + grid.start[one], grid.row.begin() + grid.start[one + 1]);
+    };
+    if constexpr (D == 2) {
+      for (int j : around[1])
+        for (int i : around[0]) add({i, j});
+    } else {
+      for (int k : around[2])
+        for (int j : around[1])
+          for (int i : around[0]) add({i, j, k});
+    }
+    for (int k = 0; k < D; ++k) x[k].resize(row.size());
+    is_fluid.resize(row.size()), square.resize(row.size()), near.assign((row.size() + 7) / 8 * 8, 0);
+    for (std::size_t m = 0; m < row.size(); ++m) {
+      for (int k = 0; k < D; ++k) x[k][m] = position[row[m]][k];
+      is_fluid[m] = fluid[row[m]];
+    }
+  }
+
+  void measure(const Vector<D>& from, const Periodicity<D>& space) {
+    const std::size_t count = row.size();
+    std::fill(square.begin(), square.end(), 0.0);
+    double* result = square.data();
+    for (int k = 0; k < D; ++k) {
+      const double* at = x[k].data();
+      const double here = from[k], length = space.any ? space.length[k] : 0.0, half = 0.5 * length;
+      if (length > 0) {
+#pragma omp simd
+        for (std::size_t m = 0; m < count; ++m) {
+          double r = at[m] - here;
+          r -= r > half ? length : 0.0;
+          r += r < -half ? length : 0.0;
+          result[m] += r * r;
+        }
+      } else {
+#pragma omp simd
+        for (std::size_t m = 0; m < count; ++m) result[m] += (at[m] - here) * (at[m] - here);
+      }
+    }
+  }
+
+  // Writes the rows nearer than the root of `within`, candidate `self` apart, to `to`; returns how many.
+  std::size_t select(double within, bool fluid_only, std::size_t self, std::int32_t* to) {
+    const std::size_t count = row.size();
+    const double* distance = square.data();
+    const std::uint8_t* fluid = is_fluid.data();
+    std::uint8_t* chosen = near.data();
+    const std::uint8_t any_kind = fluid_only ? 0 : 1;
+#pragma omp simd
+    for (std::size_t m = 0; m < count; ++m) chosen[m] = static_cast<std::uint8_t>((distance[m] < within) & (fluid[m] | any_kind));
+    chosen[self] = 0;
+    std::size_t found = 0;
+    for (std::size_t m = 0; m < count; m += 8) {  // few are near: eight at a time are passed by
+      std::uint64_t word;
+      std::memcpy(&word, chosen + m, 8);
+      for (; word != 0; word &= word - 1) to[found++] = row[m + static_cast<std::size_t>(std::countr_zero(word)) / 8];
+    }
+    return found;
+  }
+};
+
+// Rows found so far; grows by doubling, without setting what is written next anyway.
+struct FoundRows {
+  std::unique_ptr<std::int32_t[]> row;
+  std::size_t count = 0, room = 0;
+  std::int32_t* space_for(std::size_t more) {
+    if (count + more > room) {
+      room = std::max<std::size_t>(2 * room, count + more + 4096);
+      std::unique_ptr<std::int32_t[]> larger(new std::int32_t[room]);
+      std::copy(row.get(), row.get() + count, larger.get());
+      row = std::move(larger);
+    }
+    return row.get() + count;
+  }
+};
 
 }  // namespace
 
@@ -126,37 +205,53 @@ void find_neighbors(Neighbors& neighbors, CellGrid<D>& grid, std::span<const Vec
   fill_cells(grid, position, domain, radius);
   const Periodicity<D> space = make_periodicity(domain);
   const std::size_t n = position.size();
-  std::vector<Vector<D>> sorted(n);
-  for (std::size_t k = 0; k < n; ++k) sorted[k] = position[grid.row[k]];
   neighbors.start.assign(n + 1, 0);
+  std::vector<std::size_t> found_at(n);
   const int chunks = omp_get_max_threads() * 8;
-  std::vector<std::vector<std::int32_t>> found(chunks);
+  std::vector<FoundRows> found(chunks);
+  const std::size_t cells = grid.start.size() - 1;
+  // Chunks of whole cells with about as many particles each.
+  const auto first_cell = [&](int chunk) {
+    if (chunk == chunks) return cells;
+    const auto rows = static_cast<std::int32_t>(n * static_cast<std::size_t>(chunk) / static_cast<std::size_t>(chunks));
+    return static_cast<std::size_t>(std::lower_bound(grid.start.begin(), grid.start.end() - 1, rows) - grid.start.begin());
+  };
   const double square = radius * radius;
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int chunk = 0; chunk < chunks; ++chunk) {
-    auto& list = found[chunk];
-    const std::size_t first = n * chunk / chunks, last = n * (chunk + 1) / chunks;
-    for (std::size_t i = first; i < last; ++i) {
-      if (search[i] == Search::none) continue;
-      const bool fluid_only = search[i] == Search::fluid_only;
-      const Vector<D> x = position[i];
-      const std::size_t before = list.size();
-      visit_runs(grid, x, radius, [&](std::int32_t a, std::int32_t b) {
-        for (std::int32_t k = a; k < b; ++k) {
-          if (space.difference(x, sorted[k]).squaredNorm() >= square) continue;
-          const std::int32_t j = grid.row[k];
-          if (j == static_cast<std::int32_t>(i) || (fluid_only && !is_fluid[j])) continue;
-          list.push_back(j);
+#pragma omp parallel
+  {
+    Candidates<D> candidates;
+#pragma omp for schedule(dynamic, 1)
+    for (int chunk = 0; chunk < chunks; ++chunk) {
+      FoundRows& list = found[chunk];
+      const std::size_t last = first_cell(chunk + 1);
+      for (std::size_t cell = first_cell(chunk); cell < last; ++cell) {
+        bool gathered = false;
+        for (std::int32_t m = grid.start[cell]; m < grid.start[cell + 1]; ++m) {
+          const std::int32_t i = grid.row[m];
+          if (search[i] == Search::none) continue;
+          if (!gathered) candidates.gather(grid, position, is_fluid, cell);
+          gathered = true;
+          candidates.measure(position[i], space);
+          const std::size_t near =
+              candidates.select(square, search[i] == Search::fluid_only, candidates.own + static_cast<std::size_t>(m - grid.start[cell]),
+                                list.space_for(candidates.row.size()));
+          found_at[i] = list.count;
+          neighbors.start[i + 1] = static_cast<std::int64_t>(near);
+          list.count += near;
         }
-      });
-      neighbors.start[i + 1] = static_cast<std::int64_t>(list.size() - before);
+      }
     }
   }
   for (std::size_t i = 0; i < n; ++i) neighbors.start[i + 1] += neighbors.start[i];
   neighbors.index.resize(static_cast<std::size_t>(neighbors.start[n]));
 #pragma omp parallel for schedule(dynamic, 1)
   for (int chunk = 0; chunk < chunks; ++chunk)
-    std::copy(found[chunk].begin(), found[chunk].end(), neighbors.index.begin() + neighbors.start[n * chunk / chunks]);
+    for (std::int32_t m = grid.start[first_cell(chunk)]; m < grid.start[first_cell(chunk + 1)]; ++m) {
+      const std::int32_t i = grid.row[m];
+      if (search[i] == Search::none) continue;
+      const std::int32_t* rows = found[chunk].row.get() + found_at[i];
+      std::copy(rows, rows + (neighbors.start[i + 1] - neighbors.start[i]), neighbors.index.begin() + neighbors.start[i]);
+    }
 }
 
 template Periodicity<2> make_periodicity(const Domain<2>&);

@@ -53,7 +53,7 @@ struct Neighbors {
   }
 };
 
-// Cells of half a radius over the particles' bounding box; particle positions copied in cell order.
+// Cells of at least a radius over the particles' bounding box.
 template <int D>
 struct CellGrid {
   Vector<D> origin;

@@ -7,22 +7,26 @@
 
 namespace sim {
 
-// Sum of term(i) for i in [0, count), the same for any number of threads.
-template <class Term>
-double ordered_sum(std::size_t count, Term&& term) {
+// Sum of term(i) for i in [0, count), the same for any number of threads. `zero`: of the sum's type, a number or an array of them.
+template <class Sum, class Term>
+Sum ordered_total(std::size_t count, const Sum& zero, Term&& term) {
   constexpr std::size_t block = 2048;
   const std::ptrdiff_t blocks = static_cast<std::ptrdiff_t>((count + block - 1) / block);
-  std::vector<double> partial(static_cast<std::size_t>(blocks));
+  std::vector<Sum> partial(static_cast<std::size_t>(blocks), zero);
 #pragma omp parallel for schedule(static) if (blocks > 4)
   for (std::ptrdiff_t b = 0; b < blocks; ++b) {
     const std::size_t end = std::min(count, (static_cast<std::size_t>(b) + 1) * block);
-    double sum = 0;
+    Sum sum = zero;
     for (std::size_t i = static_cast<std::size_t>(b) * block; i < end; ++i) sum += term(i);
     partial[static_cast<std::size_t>(b)] = sum;
   }
-  double total = 0;
-  for (double sum : partial) total += sum;
+  Sum total = zero;
+  for (const Sum& sum : partial) total += sum;
   return total;
+}
+template <class Term>
+double ordered_sum(std::size_t count, Term&& term) {
+  return ordered_total(count, 0.0, term);
 }
 
 // Largest of value(i), at least `floor`.

@@ -179,13 +179,12 @@ struct NearElements {
 template <int D>
 void cut_links(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
   const Index n = static_cast<Index>(state.size());
+  std::vector<std::uint8_t> beside(n, 0);
+  for (Index s = scene.elastic_count; s < static_cast<Index>(scene.elastic_count + scene.shell_count); ++s)
+    for (std::int32_t i : work.neighbors.of(s)) beside[i] = 1;
   work.near_sheet.clear();
   for (Index i = scene.first_fluid; i < n; ++i)
-    for (std::int32_t j : work.neighbors.of(i))
-      if (state.kind[j] == Kind::shell) {
-        work.near_sheet.push_back(static_cast<std::int32_t>(i));
-        break;
-      }
+    if (beside[i]) work.near_sheet.push_back(static_cast<std::int32_t>(i));
   const Index near = static_cast<Index>(work.near_sheet.size());
 #pragma omp parallel
   {

@@ -66,18 +66,23 @@ void check_step(const Scene<D>& scene, const State<D>& state, double dt) {
   const double l0 = scene.description.spacing;
   if (dt < 1e-4 * scene.description.scheme.maximum_step && dt < state.last_step)
     throw NumericalFailure("a speed ran away: the step fell below a ten-thousandth of scheme.maximum_step");
-  for (std::size_t i = 0; i < state.size(); ++i) {
+  const auto sound = [&](Index i) {
     const double speed = state.velocity[i].norm();
-    if (std::isfinite(speed) && state.position[i].allFinite() && std::isfinite(state.pressure[i]) &&
-        (i < static_cast<std::size_t>(scene.first_fluid) || speed * dt < l0))
-      continue;
-    char text[240];
-    std::snprintf(text, sizeof text, "%s of particle %lld (body '%s') at (%.4g, %.4g, %.4g) m",
-                  std::isfinite(speed) ? "runaway speed" : "no finite speed", static_cast<long long>(state.id[i]),
-                  scene.description.bodies[state.body[i]].name.c_str(), state.position[i][0], state.position[i][1],
-                  D == 3 ? state.position[i][D - 1] : 0.0);
-    throw NumericalFailure(text);
-  }
+    return std::isfinite(speed) && state.position[i].allFinite() && std::isfinite(state.pressure[i]) &&
+           (i < scene.first_fluid || speed * dt < l0);
+  };
+  const Index n = static_cast<Index>(state.size());
+  Index i = n;  // the first that is not
+#pragma omp parallel for schedule(static) reduction(min : i)
+  for (Index k = 0; k < n; ++k)
+    if (!sound(k)) i = std::min(i, k);
+  if (i == n) return;
+  char text[240];
+  std::snprintf(text, sizeof text, "%s of particle %lld (body '%s') at (%.4g, %.4g, %.4g) m",
+                std::isfinite(state.velocity[i].norm()) ? "runaway speed" : "no finite speed", static_cast<long long>(state.id[i]),
+                scene.description.bodies[state.body[i]].name.c_str(), state.position[i][0], state.position[i][1],
+                D == 3 ? state.position[i][D - 1] : 0.0);
+  throw NumericalFailure(text);
 }
 
 template <int D>
@@ -119,12 +124,17 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
   if (scene.solids) timed(clocks, Stage::elastic, [&] { report.elastic_substeps = predict_solids(scene, state, work, dt); });
   timed(clocks, Stage::pressure_assembly, [&] { pressure_poisson(scene, state, work, dt); });
   if (scene.shells) {
-    timed(clocks, Stage::elastic, [&] { report.elastic_substeps = predict_leaflets(scene, state, work, dt).substeps; });
+    timed(clocks, Stage::elastic, [&] {
+      const ShellSubstepReport shells = predict_leaflets(scene, state, work, dt);
+      report.elastic_substeps = shells.substeps;
+      state.ledger.limiter_hits += shells.limiter_hits;
+    });
     const StageClock clock(clocks, Stage::leaflet_coupling);
     wetted_sides(scene, state, work);
     couple_leaflets(scene, state, work, dt);
     remember_sides(scene, state, work);
   }
+  state.ledger.elastic_substeps += report.elastic_substeps;
   pressure_stage(scene, state, work, report);
   timed(clocks, Stage::pressure_gradient, [&] { pressure_gradients(scene, state, work); });
   if (scene.shells) timed(clocks, Stage::leaflet_coupling, [&] { correct_leaflets(scene, state, work, dt); });
@@ -175,15 +185,13 @@ namespace {
 template <int D>
 void look_around(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
   const std::size_t n = state.size();
-  work.search.assign(n, Search::none);
-  work.is_fluid.assign(n, 0);
-  for (std::size_t i = 0; i < n; ++i) {
+  work.search.resize(n);
+  work.is_fluid.resize(n);
+#pragma omp parallel for schedule(static)
+  for (Index i = 0; i < static_cast<Index>(n); ++i) {
     const bool fluid = state.kind[i] == Kind::fluid || state.kind[i] == Kind::port;
     work.is_fluid[i] = fluid;
-    if (fluid)
-      work.search[i] = Search::all;
-    else if (state.kind[i] != Kind::wall)
-      work.search[i] = Search::fluid_only;
+    work.search[i] = fluid ? Search::all : state.kind[i] == Kind::wall ? Search::none : Search::fluid_only;
   }
   boundary_surfaces(scene, state, work);
   find_neighbors<D>(work.neighbors, work.grid, state.position, work.search, work.is_fluid, scene.description.domain, scene.lattice.radius);

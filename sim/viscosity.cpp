@@ -118,8 +118,8 @@ SolveReport solve_viscosity(const Scene<D>& scene, const State<D>& state, Worksp
   for (Index i = first; i <= n; ++i) a.start[i - first] = work.neighbors.start[i] - work.neighbors.start[first];
   a.column.resize(a.start[rows]);
   a.value.resize(a.start[rows]);
-  std::vector<double>& b = work.viscous_source;
-  b.resize(static_cast<std::size_t>(rows) * D);
+  std::vector<Vector<D>>&b = work.viscous_source, &x = work.viscous_solution;
+  b.resize(rows), x.resize(rows);
   // Port rows keep their velocity: identity rows. Boundary links are known values: they move to the right-hand side (column = own row, 0).
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index i = first; i < n; ++i) {
@@ -146,24 +146,14 @@ SolveReport solve_viscosity(const Scene<D>& scene, const State<D>& state, Worksp
     }
     if (given) source = diagonal * state.velocity[i];
     a.diagonal[i - first] = diagonal;
-    for (int d = 0; d < D; ++d) b[d * rows + (i - first)] = source[d];
+    b[i - first] = source;
+    x[i - first] = state.velocity[i] + dt * work.acceleration[i];
   }
-  std::vector<double>& x = work.viscous_solution;
-  x.resize(b.size());
-  for (Index i = 0; i < rows; ++i)
-    for (int d = 0; d < D; ++d) x[d * rows + i] = state.velocity[first + i][d] + dt * work.acceleration[first + i][d];
-  SolveReport report;
-  for (int d = 0; d < D; ++d) {
-    const SolveReport one = conjugate_gradient(a, {b.data() + d * rows, static_cast<std::size_t>(rows)},
-                                               {x.data() + d * rows, static_cast<std::size_t>(rows)}, 1e-8, 400, nullptr, work.scratch);
-    report.iterations += one.iterations;
-    report.residual = std::max(report.residual, one.residual);
-    report.converged = report.converged && one.converged;
-  }
+  const SolveReport report = conjugate_gradient<D>(a, b, x, 1e-8, 400, work.viscous_scratch);
 #pragma omp parallel for schedule(static)
   for (Index i = first; i < n; ++i) {
     if (state.kind[i] != Kind::fluid) continue;
-    for (int d = 0; d < D; ++d) work.acceleration[i][d] = (x[d * rows + (i - first)] - state.velocity[i][d]) / dt;
+    work.acceleration[i] = (x[i - first] - state.velocity[i]) / dt;
   }
   if (!boundary_force.empty()) {
     const Index solids = static_cast<Index>(boundary_force.size());

@@ -9,6 +9,7 @@
 #include "sim/contact.h"
 #include "sim/gap_film.h"
 #include "sim/linear_solver.h"
+#include "sim/multigrid.h"
 #include "sim/neighbors.h"
 #include "sim/particles.h"
 #include "sim/solid_dynamics.h"
@@ -52,7 +53,8 @@ struct Workspace {
 
   // the viscosity problem
   SymmetricMatrix viscous_matrix;
-  std::vector<double> viscous_source, viscous_solution;
+  std::vector<Vector<D>> viscous_source, viscous_solution;  // Pa/m, m/s
+  VectorScratch<D> viscous_scratch;
 
   // solids
   SolidMotion<D> solid_motion;

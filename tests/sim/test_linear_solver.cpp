@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <random>
 
+#include "sim/multigrid.h"
+
 namespace sim {
 namespace {
 
