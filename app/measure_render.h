@@ -13,6 +13,7 @@ struct RenderSpeed {
   double read = 0;   // s: a frame out of the run file and into a render::Frame; mean
   double full = 0;   // s: drawn as a movie shows it; mean
   double draft = 0;  // s: drawn with less detail, as the window does while the mouse moves (draft_settings); mean
+  double full_processor = 0, draft_processor = 0;  // s of all processors together for the same; other programs do not lengthen it
   std::string driver;
 };
 

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/point_grid.h"
-
 namespace sim {
 namespace {
 
@@ -170,40 +168,6 @@ OrificeArea geometric_orifice_area(const ValveSheet& sheet, std::span<const Vect
   const double pixel_area = resolution * resolution;
   result.area = pixel_area * static_cast<double>(std::count(raster.open.begin(), raster.open.end(), 1));
   result.largest_opening = pixel_area * static_cast<double>(largest_component(raster));
-  return result;
-}
-
-Coaptation coaptation(const ValveSheet& sheet, std::span<const Vector3d> position, double distance) {
-  Coaptation result;
-  const PointGrid<3> grid(position, distance);
-  std::vector<Vector3d> normal;
-  std::vector<double> area;
-  sheet_normals_and_areas(sheet, position, normal, area);
-  double tips = 0;
-  for (std::size_t i = 0; i < sheet.size(); ++i) {
-    if (sheet.held[i]) continue;
-    bool touches = false;
-    grid.for_each_near(position[i], distance, [&](std::int32_t j, double) {
-      touches = touches || sheet.leaflet[static_cast<std::size_t>(j)] != sheet.leaflet[i];
-    });
-    if (!touches) continue;
-    result.area += 0.5 * area[i];
-    const ValveSheet::Leaflet& leaflet = sheet.leaflets[static_cast<std::size_t>(sheet.leaflet[i])];
-    if (leaflet.tip < 0) continue;
-    const Vector3d side = sheet.frame.axis.cross(leaflet.outward);
-    if (std::abs(side.dot(sheet.rest[i] - sheet.rest[static_cast<std::size_t>(leaflet.tip)])) < 1.5 * sheet.spacing)
-      result.central += area[i] / (3 * sheet.spacing);
-  }
-  for (const ValveSheet::Leaflet& leaflet : sheet.leaflets) {
-    for (std::size_t i = 1; i < leaflet.free_edge.size(); ++i)
-      result.length += 0.5 * (position[leaflet.free_edge[i]] - position[leaflet.free_edge[i - 1]]).norm();
-    if (leaflet.tip < 0) continue;
-    ++tips;
-    result.effective_height += sheet.frame.axis.dot(position[leaflet.tip] - sheet.frame.annulus_center);
-  }
-  result.height = result.length > 0 ? result.area / result.length : 0;
-  result.central /= std::max<double>(1, static_cast<double>(sheet.leaflets.size()));
-  result.effective_height /= std::max(1.0, tips);
   return result;
 }
 

@@ -22,12 +22,13 @@ OrificeArea geometric_orifice_area(const ValveSheet& sheet, std::span<const Eige
                                    double half_contact, double resolution = 1e-4);
 
 struct Coaptation {
-  double area = 0;     // m2: leaflet area within `distance` of another leaflet, mean of the two sides
-  double length = 0;   // m: half the sum of the free edges
-  double height = 0;   // m: area / length
-  double central = 0;  // m: the same along the leaflets' mid-lines: touching area of a strip of 3 l0 about them, over its width; mean
+  double area = 0;              // m2: leaflet area nearer than `distance` to another leaflet's surface, mean of the two sides
+  double length = 0;            // m: half the sum of the free edges
+  double height = 0;            // m: area / length
+  double central = 0;           // m: length along which a leaflet's mid-line touches another leaflet; mean of the leaflets
   double effective_height = 0;  // m: of the free edges' middles over the annulus plane, mean of the leaflets (Schaefers' eH)
 };
+// Between rows the distance to the other leaflets is taken as linear, so that the border of the touching area lies between them.
 Coaptation coaptation(const ValveSheet& sheet, std::span<const Eigen::Vector3d> position, double distance);
 
 }  // namespace sim

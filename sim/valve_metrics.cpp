@@ -151,7 +151,7 @@ std::vector<NamedValue> valve_metrics(const ValveSheet& sheet, const ValveMoment
   std::vector<NamedValue> values;
   const auto add = [&](const std::string& name, const char* units, double value) { values.push_back({name, units, value}); };
   const OrificeArea orifice = geometric_orifice_area(sheet, moment.position, 0.5 * sheet.thickness, 0.5 * sheet.contact_distance());
-  const Coaptation closed = coaptation(sheet, moment.position, 1.5 * sheet.contact_distance());
+  const Coaptation closed = coaptation(sheet, moment.position, sheet.contact_distance());
   const double jet = jet_speed(sheet.frame, moment.blood_position, moment.blood_velocity);
   add("orifice_area", "m2", orifice.area), add("largest_opening", "m2", orifice.largest_opening);
   add("coaptation_area", "m2", closed.area), add("coaptation_height", "m", closed.height);

@@ -48,14 +48,40 @@ TEST(Orifice, SeenFromTheAortaTheNarrowestPlaceCounts) {
   }
 }
 
-// Two strips that overlap by 3 of 8 mm, 0.5 mm apart: 3 x 5 mm2 on each side.
+// Two strips that overlap by 3 of 8 mm, 0.5 mm apart and five wide: 3 x 5 mm2 on each side, and sqrt(0.6^2 - 0.5^2) = 0.33 mm beyond, where
+// the other strip's end is still nearer than 0.6 mm. Between rows 1 mm apart the distance is not quite linear there: to
+// within 0.4 of a row.
 TEST(Orifice, CoaptationOfOverlappingStrips) {
+  for (const double shift : {0.0, 0.3e-3, 0.7e-3}) {
+    Parts parts;
+    add_sheet(parts, 0, {0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}, 9, 6);
+    add_sheet(parts, 1, {5e-3 + shift, 0, 0.5e-3}, {1e-3, 0, 0}, {0, 1e-3, 0}, 9, 6);
+    const sim::ValveSheet sheet = parts.build(12e-3, 1e-3, 0.5e-3);
+    const auto found = sim::coaptation(sheet, sheet.rest, 0.6e-3);
+    EXPECT_NEAR(found.area, (3e-3 - shift + std::sqrt(0.36 - 0.25) * 1e-3) * 5e-3, 0.4e-3 * 5e-3) << shift;
+  }
+  Parts apart;
+  add_sheet(apart, 0, {0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}, 9, 6);
+  add_sheet(apart, 1, {0, 0, 0.7e-3}, {1e-3, 0, 0}, {0, 1e-3, 0}, 9, 6);
+  const sim::ValveSheet sheet = apart.build(12e-3, 1e-3, 0.5e-3);
+  EXPECT_EQ(sim::coaptation(sheet, sheet.rest, 0.6e-3).area, 0);
+  EXPECT_NEAR(sim::coaptation(sheet, sheet.rest, 0.8e-3).area, 40e-6, 1e-12);  // all of both
+}
+
+// Two flat leaves that part at the angle a, 2 d apart at the hinge: nearer than D up to (D - 2 d cos a) / sin a of the arm and no farther,
+// so that what touches follows the gap and not the rows.
+TEST(Orifice, CoaptationEndsWhereTheGapDoes) {
+  const double half_angle = 0.1, half_gap = 0.2e-3, reach = 1.2e-3, l0 = 1e-3, length = 20e-3, width = 10e-3;
   Parts parts;
-  add_sheet(parts, 0, {0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}, 9, 6);
-  add_sheet(parts, 1, {5e-3, 0, 0.5e-3}, {1e-3, 0, 0}, {0, 1e-3, 0}, 9, 6);
-  const sim::ValveSheet sheet = parts.build(12e-3, 1e-3, 0.5e-3);
-  const auto found = sim::coaptation(sheet, sheet.rest, 0.6e-3);
-  EXPECT_NEAR(found.area, (3.5 * 5) * 1e-6, 1e-9);  // rows 5 to 8 of the first, 0 to 3 of the second: half a row beyond the overlap each
+  for (const double sign : {1.0, -1.0})
+    add_sheet(parts, sign > 0 ? 0 : 1, {sign * half_gap, -0.5 * width, 0},
+              l0 * Vector3d(sign * std::sin(half_angle), 0, std::cos(half_angle)), {0, l0, 0}, 21, 11);
+  const sim::ValveSheet sheet = parts.build(12e-3, l0, 0.3e-3);
+  const auto found = sim::coaptation(sheet, sheet.rest, reach);
+  // A point at s of one arm lies s sin 2a + 2 d cos a from the other's plane, where its foot stays on the arm.
+  const double expected = (reach - 2 * half_gap * std::cos(half_angle)) / std::sin(2 * half_angle);
+  EXPECT_LT(expected, 0.5 * length);
+  EXPECT_NEAR(found.area, expected * width, 0.05 * expected * width);
 }
 
 // Doors turned up to the vertical stand `length` over the hinge, which lies 5 mm over the annulus plane.
@@ -65,7 +91,8 @@ TEST(Orifice, EffectiveHeightOfStandingDoors) {
   EXPECT_EQ(sim::coaptation(sheet, sheet.rest, 0.5e-3).central, 0);
 }
 
-// Two doors whose last 4 mm stand upright face to face: central coaptation 4 mm.
+// Two doors whose last 4 mm stand upright face to face, 0.4 mm apart: central coaptation is 4 mm and what of the bend lies nearer than
+// 0.45 mm (0.02 mm each). Stretched to twice the length upwards it is 8 mm, stretched sideways it stays: a length, not an area.
 TEST(Orifice, CentralCoaptationOfTwoLeaflets) {
   Parts parts;
   const double l0 = 0.5e-3, gap = 0.4e-3;
@@ -83,7 +110,12 @@ TEST(Orifice, CentralCoaptationOfTwoLeaflets) {
       }
   }
   const sim::ValveSheet sheet = parts.build(8e-3, l0, 0.3e-3);
-  EXPECT_NEAR(sim::coaptation(sheet, sheet.rest, 0.45e-3).central, 4e-3, 1.2 * l0);
+  EXPECT_NEAR(sim::coaptation(sheet, sheet.rest, 0.45e-3).central, 4e-3, 0.25 * l0);
+  std::vector<Vector3d> longer = sheet.rest, wider = sheet.rest;
+  for (Vector3d& p : longer) p.z() *= 2;
+  for (Vector3d& p : wider) p.y() *= 1.5;
+  EXPECT_NEAR(sim::coaptation(sheet, longer, 0.45e-3).central, 8e-3, 0.25 * l0);
+  EXPECT_NEAR(sim::coaptation(sheet, wider, 0.45e-3).central, 4e-3, 0.25 * l0);
 }
 
 }  // namespace
