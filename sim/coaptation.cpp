@@ -33,9 +33,7 @@ std::vector<double> distances_to_others(const ValveSheet& sheet, std::span<const
   }
   std::vector<double> distance(sheet.size(), reach);
   const PointGrid<3> grid(middle, reach + largest);
-  const auto rows = static_cast<std::int64_t>(sheet.size());
-#pragma omp parallel for schedule(static)
-  for (std::int64_t i = 0; i < rows; ++i)
+  for (std::size_t i = 0; i < sheet.size(); ++i)
     grid.for_each_near(position[i], reach + largest, [&](std::int32_t e, double) {
       const auto& [a, b, c] = sheet.elements[e];
       if (sheet.leaflet[a] != sheet.leaflet[i])
