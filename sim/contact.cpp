@@ -30,7 +30,7 @@ std::int8_t starting_side(const ShellElasticity<D>& shells, const ShellBody& a, 
 template <int D>
 std::vector<Padded<D>> padded(std::span<const Vector<D>> values) {
   std::vector<Padded<D>> result(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) result[i] = shell_kernel::pad<D>(values[i]);
+  for (std::size_t i = 0; i < values.size(); ++i) result[i] = pad<D>(values[i]);
   return result;
 }
 

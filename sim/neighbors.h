@@ -27,6 +27,11 @@ struct Periodicity {
         }
     return r;
   }
+  Padded<D> difference(const Padded<D>& from, const Padded<D>& to) const requires(D == 3) {
+    Padded<D> r = to - from;
+    if (any) r.template head<D>() = difference(Vector<D>(from.template head<D>()), Vector<D>(to.template head<D>()));
+    return r;
+  }
   // The position inside the periodic domain.
   Vector<D> wrapped(Vector<D> x) const {
     if (any)

@@ -10,11 +10,14 @@ void link_weights(const Scene<D>& scene, const State<D>& state, Workspace<D>& wo
   const Index n = static_cast<Index>(state.size());
   work.link_weight.resize(work.neighbors.index.size());
   const double radius = scene.lattice.radius, closest = scene.lattice.closest();
+  work.position.resize(n);
+#pragma omp parallel for schedule(static)
+  for (Index i = 0; i < n; ++i) work.position[i] = pad<D>(state.position[i]);
 #pragma omp parallel for schedule(dynamic, 512)
   for (Index i = 0; i < n; ++i)
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
       const std::int32_t j = work.neighbors.index[k];
-      const double r = scene.space.difference(state.position[i], state.position[j]).norm();
+      const double r = scene.space.difference(work.position[i], work.position[j]).norm();
       work.link_weight[k] = weight(r, radius, closest) * (j < scene.first_fluid ? scene.measure[j] : 1.0);
     }
 }

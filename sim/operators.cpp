@@ -28,31 +28,21 @@ void moment_matrices(const Scene<D>& scene, const State<D>& state, Workspace<D>&
   const double least = scene.lattice.closest() * scene.lattice.closest();
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index i = scene.first_fluid; i < n; ++i) {
-    Tensor<D> fluid = Tensor<D>::Zero(), boundary = Tensor<D>::Zero();
+    DyadSum<D> with_pressure, all;
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
       const double w = work.link_weight[k];
       if (w == 0) continue;
       const std::int32_t j = work.neighbors.index[k];
-      const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
+      const Padded<D> r = scene.space.difference(work.position[i], work.position[j]);
       const double c = factor * w / std::max(r.squaredNorm(), least);
-      if (j >= scene.first_fluid) {
-        const Tensor<D> share = c * r * r.transpose();
-        if (state.kind[j] == Kind::fluid) {
-          fluid += share;
-        } else {
-          boundary += share;
-          const Port<D>& port = scene.description.ports[state.port[j]];
-          if (gives_pressure(port)) {
-            fluid += share;
-            boundary -= share;
-          }
-        }
-      } else {
-        boundary.noalias() += c * r * r.transpose();
-      }
+      const bool port = j >= scene.first_fluid && state.kind[j] == Kind::port;
+      const bool has_pressure = j >= scene.first_fluid && (!port || gives_pressure(scene.description.ports[state.port[j]]));
+      all.add(c * r, r);
+      with_pressure.add((has_pressure ? c : 0.0) * r, r);
     }
+    Tensor<D> fluid = with_pressure.tensor();
     const bool isolated = work.number_density[i] < 0.6 || (scene.sheet && work.support[i] < 0.3);
-    work.velocity_inverse[i] = isolated ? Tensor<D>::Identity().eval() : floored_inverse<D>(fluid + boundary, 0.3);
+    work.velocity_inverse[i] = isolated ? Tensor<D>::Identity().eval() : floored_inverse<D>(all.tensor(), 0.3);
     if (work.surface[i] == 1) {  // the surface, half a spacing ahead, is a sample of the pressure (see pressure_gradients)
       const double ahead = work.surface_outward[i].norm();
       const double missing = scene.lattice.number_density * std::max(1 - work.number_density[i], 0.0);
@@ -79,32 +69,37 @@ void velocity_gradients(const Scene<D>& scene, const State<D>& state, Workspace<
   const double l0 = scene.lattice.spacing;
   const double factor = scene.lattice.gradient_factor();
   const double least = scene.lattice.closest() * scene.lattice.closest();
+  work.velocity.resize(n);
+  work.gradient_columns.resize(n);
+#pragma omp parallel for schedule(static)
+  for (Index i = 0; i < n; ++i) work.velocity[i] = pad<D>(state.velocity[i]);
   constexpr double resolved_cell = 20;  // -, cell Reynolds number up to which a boundary layer of one spacing is resolved
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index i = scene.first_fluid; i < n; ++i) {
-    Tensor<D> sum = Tensor<D>::Zero();
+    DyadSum<D> sum;
     double kinematic = -1;  // m²/s, at the rate that a wall one spacing away would cause; asked for only beside a boundary
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
       const double w = work.link_weight[k];
       if (w == 0) continue;
       const std::int32_t j = work.neighbors.index[k];
-      const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
+      const Padded<D> r = scene.space.difference(work.position[i], work.position[j]);
       const double c = factor * w / std::max(r.squaredNorm(), least);
       if (j >= scene.first_fluid) {
-        sum.noalias() += c * (state.velocity[j] - state.velocity[i]) * r.transpose();
+        sum.add(c * (work.velocity[j] - work.velocity[i]), r);
       } else {
         const Vector<D>& normal = work.boundary_normal[j];
-        const double t = fluid_fraction(scene, work, r, j);
+        const double t = fluid_fraction<D>(scene, work, r.template head<D>(), j);
         Vector<D> jump = work.boundary_velocity[j] - state.velocity[i];
         const Vector<D> slip = jump - jump.dot(normal) * normal;
         const double speed = slip.norm();
         if (kinematic < 0) kinematic = kinematic_viscosity(scene, state.body[i], speed / l0);
         const double cell = speed * l0;
         if (cell > resolved_cell * kinematic) jump -= (1 - resolved_cell * kinematic / cell) * slip;
-        sum.noalias() += c / t * jump * r.transpose();
+        sum.add(pad<D>(c / t * jump), r);
       }
     }
-    work.velocity_gradient[i] = sum * work.velocity_inverse[i];
+    work.velocity_gradient[i] = sum.tensor() * work.velocity_inverse[i];
+    for (int d = 0; d < D; ++d) work.gradient_columns[i].column[d] = pad<D>(work.velocity_gradient[i].col(d));
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,6 +12,30 @@ template <int D>
 using Vector = Eigen::Matrix<double, D, 1>;
 template <int D>
 using Tensor = Eigen::Matrix<double, D, D>;
+// A vector filled up with zeros to a whole register, so that sums over neighbours vectorise.
+template <int D>
+using Padded = Eigen::Matrix<double, D == 3 ? 4 : 2, 1>;
+template <int D>
+Padded<D> pad(const Vector<D>& v) {
+  Padded<D> p = Padded<D>::Zero();
+  p.template head<D>() = v;
+  return p;
+}
+
+// A sum of dyads a b^T.
+template <int D>
+struct DyadSum {
+  std::array<Padded<D>, D> column;
+  DyadSum() { column.fill(Padded<D>::Zero()); }
+  void add(const Padded<D>& a, const Padded<D>& b) {
+    for (int k = 0; k < D; ++k) column[k] += b[k] * a;
+  }
+  Tensor<D> tensor() const {
+    Tensor<D> t;
+    for (int k = 0; k < D; ++k) t.col(k) = column[k].template head<D>();
+    return t;
+  }
+};
 
 // What a particle is made of. `shell` is an elastic particle of a one-layer sheet (a leaflet, in 2-D a beam), `port` a blood particle
 // outside an open end whose motion is prescribed by the port.

@@ -220,12 +220,12 @@ void pressure_gradients(const Scene<D>& scene, const State<D>& state, Workspace<
     if (state.kind[i] != Kind::fluid) continue;
     const bool inside = work.surface[i] != 1 || work.number_density[i] >= 0.6;
     const double p_i = state.pressure[i], rho = scene.density[state.body[i]];
-    Vector<D> sum = Vector<D>::Zero();
+    Padded<D> total = Padded<D>::Zero();
     for (std::int64_t e = work.neighbors.start[i]; e < work.neighbors.start[i + 1]; ++e) {
       const double w = work.link_weight[e];
       if (w == 0) continue;
       const std::int32_t j = work.neighbors.index[e];
-      const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
+      const Padded<D> r = scene.space.difference(work.position[i], work.position[j]);
       const double c = factor * w / std::max(r.squaredNorm(), least);
       if (j >= scene.first_fluid) {
         double t = 1;
@@ -234,12 +234,14 @@ void pressure_gradients(const Scene<D>& scene, const State<D>& state, Workspace<
           if (inside && !gives_pressure(port)) continue;
           if (inside) t = port_fraction<D>(port, state.position[i], state.position[j]);
         }
-        sum += c / t * (inside ? state.pressure[j] - p_i : state.pressure[j] + p_i) * r;
+        total += c / t * (inside ? state.pressure[j] - p_i : state.pressure[j] + p_i) * r;
       } else if (!inside) {
         const Vector<D>& normal = work.boundary_normal[j];
-        sum += c * (2 * p_i + rho * (work.acceleration[i] - work.acceleration[j]).dot(normal) * r.dot(normal)) * r;
+        const double height = r.template head<D>().dot(normal);
+        total += c * (2 * p_i + rho * (work.acceleration[i] - work.acceleration[j]).dot(normal) * height) * r;
       }
     }
+    Vector<D> sum = total.template head<D>();
     const double ahead = work.surface_outward[i].norm();
     if (inside && ahead > 0) {  // the surface itself: p = 0 half a spacing ahead, with the weight of what is missing there
       const double missing = scene.lattice.number_density * std::max(1 - work.number_density[i], 0.0);

@@ -27,10 +27,6 @@ namespace sim {
 template <int D>
 struct Contact;
 
-// Values padded to a power of two so that sums over neighbours vectorise.
-template <int D>
-using Padded = Eigen::Matrix<double, D == 3 ? 4 : 2, 1>;
-
 struct ShellBody {
   std::int32_t body = -1;             // index into SceneDescription::bodies
   std::int32_t first = 0, count = 0;  // shell rows

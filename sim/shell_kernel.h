@@ -11,13 +11,6 @@ namespace sim::shell_kernel {
 template <int D>
 constexpr int terms = ShellElasticity<D>::terms;
 
-template <int D>
-Padded<D> pad(const Vector<D>& v) {
-  Padded<D> p = Padded<D>::Zero();
-  p.template head<D>() = v;
-  return p;
-}
-
 // Deformed tangents and second derivatives of one particle: value[0..D-2] = a_a, then H11 (H22 H12).
 template <int D>
 struct Kinematics {

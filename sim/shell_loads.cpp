@@ -19,7 +19,7 @@ void add_shell_loads(const ShellElasticity<D>& shells, const std::vector<Load<D>
       if (load.acceleration) force[i] += factor * shells.mass[i] * load.acceleration(position[i], time);
       if (load.pressure) {
         if (x.empty())
-          for (const auto& p : position) x.push_back(shell_kernel::pad<D>(p));
+          for (const auto& p : position) x.push_back(pad<D>(p));
         const auto kinematics = shell_kernel::kinematics(shells, x.data(), i);
         force[i] -= (factor * *load.pressure * shells.area[i] * kinematics.area_ratio) * kinematics.normal.template head<D>();
       }

@@ -16,20 +16,21 @@ void shifting_displacement(const Scene<D>& scene, const State<D>& state, Workspa
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index i = scene.first_fluid; i < n; ++i) {
     if (state.kind[i] != Kind::fluid || work.surface[i] == 1) continue;
-    Vector<D> sum = Vector<D>::Zero(), outward = Vector<D>::Zero();
-    double fastest = state.velocity[i].squaredNorm();
+    Padded<D> sum = Padded<D>::Zero(), to_surface = Padded<D>::Zero();
+    double fastest = work.velocity[i].squaredNorm();
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
       const std::int32_t j = work.neighbors.index[k];
-      const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
+      const Padded<D> r = scene.space.difference(work.position[i], work.position[j]);
       const double distance = std::max(r.norm(), scene.lattice.closest());
       const double w = weight(distance, scene.lattice.radius, scene.lattice.closest()) * (j < scene.first_fluid ? scene.measure[j] : 1.0);
       const double q = w / at_l0, q2 = q * q;
       sum += w / (distance * distance) * (1 + 0.2 * q2 * q2) * r;
-      if (j >= scene.first_fluid) fastest = std::max(fastest, state.velocity[j].squaredNorm());
-      if (work.surface[j] == 1) outward += w * r;
+      if (j >= scene.first_fluid) fastest = std::max(fastest, work.velocity[j].squaredNorm());
+      if (work.surface[j] == 1) to_surface += w * r;
     }
+    Vector<D> outward = to_surface.template head<D>();
     const double strength = std::min(strongest, 0.02 + 3 * std::sqrt(fastest) * dt / l0);
-    Vector<D> shift = -factor * strength * sum;
+    Vector<D> shift = -factor * strength * sum.template head<D>();
     if (work.surface[i] == 2 && outward.squaredNorm() > 0) {
       outward.normalize();
       shift -= shift.dot(outward) * outward;
@@ -57,16 +58,18 @@ void add_subparticle_dissipation(const Scene<D>& scene, const State<D>& state, W
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index i = scene.first_fluid; i < n; ++i) {
     if (state.kind[i] != Kind::fluid) continue;
-    Vector<D> sum = Vector<D>::Zero();
+    Padded<D> sum = Padded<D>::Zero();
+    const DyadSum<D> gradient = work.gradient_columns[i];
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
       const double w = work.link_weight[k];
       const std::int32_t j = work.neighbors.index[k];
       if (w == 0 || j < scene.first_fluid) continue;
-      const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
-      const Vector<D> jump = state.velocity[j] - state.velocity[i];
-      sum += w * jump.norm() * (jump - 0.5 * (work.velocity_gradient[i] * r + work.velocity_gradient[j] * r));
+      const Padded<D> r = scene.space.difference(work.position[i], work.position[j]), jump = work.velocity[j] - work.velocity[i];
+      Padded<D> smooth = Padded<D>::Zero();  // what the mean gradient explains of the jump
+      for (int d = 0; d < D; ++d) smooth += 0.5 * r[d] * (gradient.column[d] + work.gradient_columns[j].column[d]);
+      sum += w * jump.norm() * (jump - smooth);
     }
-    work.acceleration[i] += factor * sum;
+    work.acceleration[i] += factor * sum.template head<D>();
   }
 }
 

@@ -1,7 +1,9 @@
 #include "sim/sides.h"
 
 #include <Eigen/Geometry>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <map>
 
 namespace sim {
@@ -52,26 +54,25 @@ SheetGeometry<D> make_sheet_geometry(const ShellElasticity<D>& shells) {
 namespace {
 
 template <int D>
-struct Element {
-  Vector<D> origin, normal;               // normal not unit
-  Eigen::Matrix<double, D, D - 1> edges;  // 3-D: e1, e2; 2-D: the segment
-};
-
-template <int D>
-Element<D> element_at(const State<D>& state, const std::array<std::int32_t, D>& rows) {
-  Element<D> e;
+SheetElement<D> element_at(const State<D>& state, const std::array<std::int32_t, D>& rows) {
+  SheetElement<D> e;
   e.origin = state.position[rows[0]];
   for (int k = 1; k < D; ++k) e.edges.col(k - 1) = state.position[rows[k]] - e.origin;
   if constexpr (D == 2)
     e.normal = Vector<2>(-e.edges(1, 0), e.edges(0, 0));
   else
     e.normal = Eigen::Vector3d(e.edges.col(0)).cross(Eigen::Vector3d(e.edges.col(1)));
+  e.offset = e.normal.dot(e.origin);
+  e.center.setZero();
+  for (std::int32_t row : rows) e.center += state.position[row] / D;
+  e.reach = 0;
+  for (std::int32_t row : rows) e.reach = std::max(e.reach, (state.position[row] - e.center).norm());
   return e;
 }
 
 // Whether the point x (in the element's plane) lies in the element, with a hair's margin so that no link slips between two.
 template <int D>
-bool in_element(const Element<D>& e, const Vector<D>& x) {
+bool in_element(const SheetElement<D>& e, const Vector<D>& x) {
   constexpr double margin = 1e-6;
   const Vector<D> r = x - e.origin;
   if constexpr (D == 2) {
@@ -119,14 +120,15 @@ Eigen::Matrix<double, D, 1> nearest_weights(const State<D>& state, const std::ar
   return w;
 }
 
-// Each thread's list of the elements near a row, with what the tests against them need.
+// Each thread's list of the elements near a row, and the row's height over each.
 template <int D>
 struct NearElements {
   std::vector<std::int32_t> seen;  // per element: the last row that listed it
   std::vector<std::int32_t> element;
-  std::vector<Element<D>> shape;
-  std::vector<Vector<D>> center;
-  std::vector<double> offset, height, reach;  // normal . origin, normal . x_i - offset; largest distance of a corner from the centre, m
+  // What the tests against all of them need, element by element in arrays so that they vectorise.
+  std::array<std::vector<double>, D> normal;
+  std::vector<double> offset, height;  // height: normal . x_i - offset
+  std::vector<std::uint8_t> opposite;  // filled up with zeros to whole words
 
   // Elements that hold a shell row near row i, each once, in the order of i's neighbours.
   void list(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, Index i) {
@@ -145,30 +147,48 @@ struct NearElements {
     }
   }
 
-  void measure(const Scene<D>& scene, const State<D>& state, Index i) {
-    const std::size_t n = element.size();
-    shape.resize(n), center.resize(n), offset.resize(n), height.resize(n), reach.resize(n);
-    for (std::size_t c = 0; c < n; ++c) {
-      const auto& rows = scene.sheet->elements[element[c]];
-      shape[c] = element_at<D>(state, rows);
-      center[c].setZero();
-      for (std::int32_t row : rows) center[c] += state.position[row] / D;
-      reach[c] = 0;
-      for (std::int32_t row : rows) reach[c] = std::max(reach[c], (state.position[row] - center[c]).norm());
-      offset[c] = shape[c].normal.dot(shape[c].origin);
-      height[c] = shape[c].normal.dot(state.position[i]) - offset[c];
+  void measure(const State<D>& state, const Workspace<D>& work, Index i) {
+    const std::size_t count = element.size();
+    offset.resize(count), height.resize(count), opposite.assign((count + 7) / 8 * 8, 0);
+    for (auto& component : normal) component.resize(count);
+    for (std::size_t c = 0; c < count; ++c) {
+      const SheetElement<D>& e = work.sheet_elements[element[c]];
+      for (int k = 0; k < D; ++k) normal[k][c] = e.normal[k];
+      offset[c] = e.offset;
+      height[c] = e.normal.dot(state.position[i]) - e.offset;
+    }
+  }
+
+  // Marks the elements of which `to` lies on the other side than x_i.
+  void find_opposite(const Vector<D>& to) {
+    const std::size_t count = element.size();
+    std::array<const double*, D> n;
+    for (int k = 0; k < D; ++k) n[k] = normal[k].data();
+    const double *off = offset.data(), *here = height.data();
+    std::uint8_t* result = opposite.data();
+#pragma omp simd
+    for (std::size_t c = 0; c < count; ++c) {
+      double there = -off[c];
+      for (int k = 0; k < D; ++k) there += n[k][c] * to[k];
+      result[c] = static_cast<std::uint8_t>((here[c] > 0) ^ (there > 0));
     }
   }
 
   // Whether the segment from x_i to `to`, which may end on the sheet at row `on` (-1: does not), crosses an element.
-  bool crosses(const Scene<D>& scene, const Vector<D>& from, const Vector<D>& to, std::int32_t on) const {
-    for (std::size_t c = 0; c < element.size(); ++c) {
-      const double end = shape[c].normal.dot(to) - offset[c];
-      if ((height[c] > 0) == (end > 0)) continue;
-      const Vector<D> point = from + height[c] / (height[c] - end) * (to - from);
-      if ((point - center[c]).squaredNorm() > 1.0001 * reach[c] * reach[c] || !in_element<D>(shape[c], point)) continue;
-      const auto& rows = scene.sheet->elements[element[c]];
-      if (on < 0 || std::find(rows.begin(), rows.end(), on) == rows.end()) return true;
+  bool crosses(const Scene<D>& scene, const Workspace<D>& work, const Vector<D>& from, const Vector<D>& to, std::int32_t on) {
+    find_opposite(to);
+    for (std::size_t first = 0; first < element.size(); first += 8) {  // most are not: eight at a time are passed by
+      std::uint64_t word;
+      std::memcpy(&word, opposite.data() + first, 8);
+      for (; word != 0; word &= word - 1) {
+        const std::size_t c = first + static_cast<std::size_t>(std::countr_zero(word)) / 8;
+        const SheetElement<D>& e = work.sheet_elements[element[c]];
+        const double end = e.normal.dot(to) - e.offset;
+        const Vector<D> point = from + height[c] / (height[c] - end) * (to - from);
+        if ((point - e.center).squaredNorm() > 1.0001 * e.reach * e.reach || !in_element<D>(e, point)) continue;
+        const auto& rows = scene.sheet->elements[element[c]];
+        if (on < 0 || std::find(rows.begin(), rows.end(), on) == rows.end()) return true;
+      }
     }
     return false;
   }
@@ -185,7 +205,10 @@ void cut_links(const Scene<D>& scene, const State<D>& state, Workspace<D>& work)
   work.near_sheet.clear();
   for (Index i = scene.first_fluid; i < n; ++i)
     if (beside[i]) work.near_sheet.push_back(static_cast<std::int32_t>(i));
-  const Index near = static_cast<Index>(work.near_sheet.size());
+  const Index near = static_cast<Index>(work.near_sheet.size()), elements = static_cast<Index>(scene.sheet->elements.size());
+  work.sheet_elements.resize(elements);
+#pragma omp parallel for schedule(static)
+  for (Index e = 0; e < elements; ++e) work.sheet_elements[e] = element_at<D>(state, scene.sheet->elements[e]);
 #pragma omp parallel
   {
     NearElements<D> sheet_near;
@@ -193,11 +216,12 @@ void cut_links(const Scene<D>& scene, const State<D>& state, Workspace<D>& work)
     for (Index a = 0; a < near; ++a) {
       const Index i = work.near_sheet[a];
       sheet_near.list(scene, state, work, i);
-      sheet_near.measure(scene, state, i);
+      sheet_near.measure(state, work, i);
       for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
         if (work.link_weight[k] == 0) continue;
         const std::int32_t j = work.neighbors.index[k];
-        if (sheet_near.crosses(scene, state.position[i], state.position[j], state.kind[j] == Kind::shell ? j : -1)) work.link_weight[k] = 0;
+        if (sheet_near.crosses(scene, work, state.position[i], state.position[j], state.kind[j] == Kind::shell ? j : -1))
+          work.link_weight[k] = 0;
       }
     }
   }
@@ -273,11 +297,10 @@ void remember_sides(const Scene<D>& scene, const State<D>& state, Workspace<D>& 
     for (Index a = 0; a < near; ++a) {
       const Index i = work.near_sheet[a];
       sheet_near.list(scene, state, work, i);
-      sheet_near.measure(scene, state, i);
       double best = 1e300;
       for (std::size_t c = 0; c < sheet_near.element.size(); ++c) {
         const std::int32_t e = sheet_near.element[c];
-        const double least = (state.position[i] - sheet_near.center[c]).norm() - sheet_near.reach[c];
+        const double least = (state.position[i] - work.sheet_elements[e].center).norm() - work.sheet_elements[e].reach;
         if (least > 0 && least * least >= best) continue;
         const auto& rows = scene.sheet->elements[e];
         const auto w = nearest_weights<D>(state, rows, state.position[i]);

@@ -16,6 +16,14 @@
 
 namespace sim {
 
+// An element of a leaflet as it lies now.
+template <int D>
+struct SheetElement {
+  Vector<D> origin, normal, center;       // m; the normal is not unit
+  Eigen::Matrix<double, D, D - 1> edges;  // 3-D: e1, e2; 2-D: the segment
+  double offset = 0, reach = 0;           // normal . origin; largest distance of a corner from the centre, m
+};
+
 template <int D>
 struct Workspace {
   // who is near whom
@@ -24,6 +32,9 @@ struct Workspace {
   std::vector<Search> search;
   std::vector<std::uint8_t> is_fluid;
   std::vector<double> link_weight;  // per neighbour entry: w(|r_ij|) times the share of a cell that j fills; 0 = link cut
+
+  std::vector<Padded<D>> position;  // m, of the step's start; filled by link_weights
+  std::vector<Padded<D>> velocity;  // m/s, of the step's start; filled by velocity_gradients
 
   // boundary particles as they are now (rows below first_fluid)
   std::vector<Vector<D>> boundary_normal;    // unit, into the fluid (shell: + side)
@@ -36,6 +47,7 @@ struct Workspace {
   std::vector<Tensor<D>> velocity_inverse;   // inverse moment matrix over fluid and surface points
   std::vector<Tensor<D>> pressure_inverse;   // inverse moment matrix over fluid alone
   std::vector<Tensor<D>> velocity_gradient;  // (grad v)_ab = d v_a / d x_b, 1/s
+  std::vector<DyadSum<D>> gradient_columns;  // the same in padded columns
   std::vector<double> viscosity;             // Pa s
   std::vector<float> grip;                   // 1, or less beside a port whose profile is not resolved: share of the wall's drag
   std::vector<Vector<D>> acceleration;       // m/s², all but pressure
@@ -70,7 +82,8 @@ struct Workspace {
   std::vector<SolidLink> solid_links;
 
   // leaflets
-  std::optional<Contact<D>> contact;     // a copy of the scene's: it keeps its search between steps
+  std::optional<Contact<D>> contact;  // a copy of the scene's: it keeps its search between steps
+  std::vector<SheetElement<D>> sheet_elements;
   std::vector<std::int32_t> near_sheet;  // fluid rows with a shell particle within the radius
   struct WetLink {
     std::int32_t unknown;
