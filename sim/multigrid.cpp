@@ -132,18 +132,25 @@ MultigridLevel coarsen(MultigridLevel& fine, std::vector<std::int32_t> of, std::
   return coarse;
 }
 
-// Dense inverse of the coarsest matrix, its diagonal lifted by 1e-6 so that a singular (closed) system stays bounded.
-std::vector<double> dense_inverse(const MultigridLevel& level) {
+// Dense generalised inverse of the coarsest matrix. Its diagonals are put together from the rows' sums, so that a closed region's rows sum
+// to 0 to double precision whatever the scale; the last unknown of such a region, whose pivot vanishes, is then held at 0.
+std::vector<double> dense_inverse(const MultigridLevel& level, const std::vector<double>& row_sum) {
   const std::size_t n = level.diagonal.size();
-  std::vector<double> a(n * n, 0), inverse(n * n, 0);
+  constexpr double vanishing = 1e-10;  // of the diagonal: far above the rounding of a sum, far below a region's hold on a given pressure
+  std::vector<double> a(n * n, 0), inverse(n * n, 0), diagonal(row_sum);
   for (std::size_t i = 0; i < n; ++i) {
-    a[i * n + i] = level.diagonal[i] > 0 ? level.diagonal[i] * (1.0 + 1e-6) : 1.0;
-    for (std::int64_t k = level.start[i]; k < level.start[i + 1]; ++k) a[i * n + level.column[k]] += level.value[k];
+    for (std::int64_t k = level.start[i]; k < level.start[i + 1]; ++k) {
+      a[i * n + level.column[k]] = level.value[k];
+      diagonal[i] -= level.value[k];
+    }
+    a[i * n + i] = diagonal[i];
     inverse[i * n + i] = 1;
   }
+  std::vector<bool> held(n, false);
   for (std::size_t c = 0; c < n; ++c) {
-    double pivot = a[c * n + c];
-    if (!(pivot > 1e-30)) pivot = 1e-30;
+    const double pivot = a[c * n + c];
+    held[c] = !(pivot > vanishing * diagonal[c]);
+    if (held[c]) continue;
     for (std::size_t r = 0; r < n; ++r) {
       if (r == c || a[r * n + c] == 0) continue;
       const double f = a[r * n + c] / pivot;
@@ -154,9 +161,24 @@ std::vector<double> dense_inverse(const MultigridLevel& level) {
     for (std::size_t k = 0; k < n; ++k) inverse[c * n + k] /= pivot;
     a[c * n + c] = 1;
   }
+  for (std::size_t c = 0; c < n; ++c)
+    if (held[c])
+      for (std::size_t k = 0; k < n; ++k) inverse[c * n + k] = inverse[k * n + c] = 0;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < i; ++j) inverse[i * n + j] = inverse[j * n + i] = 0.5 * (inverse[i * n + j] + inverse[j * n + i]);
   return inverse;
+}
+
+// Sums of the matrix' rows: 0 where no pressure is given nearby. In double: sums of floats would lose them, and with them the one mode that
+// a closed region leaves open.
+std::vector<double> row_sums(const SymmetricMatrix& matrix) {
+  std::vector<double> sums(matrix.rows());
+  for (std::size_t i = 0; i < matrix.rows(); ++i) {
+    double sum = matrix.diagonal[i];
+    for (std::int64_t k = matrix.start[i]; k < matrix.start[i + 1]; ++k) sum += matrix.value[k];
+    sums[i] = std::abs(sum) > 1e-13 * matrix.diagonal[i] ? sum : 0;
+  }
+  return sums;
 }
 
 // Sorts each row's entries by where their columns lie (see MultigridLevel) and makes room for the scratch.
@@ -265,6 +287,7 @@ Multigrid build_multigrid(const SymmetricMatrix& matrix) {
   for (Index k = 0; k < entries; ++k) finest.column[k] = matrix.column[k], finest.value[k] = static_cast<float>(matrix.value[k]);
   for (Index i = 0; i < n; ++i) finest.diagonal[i] = static_cast<float>(matrix.diagonal[i]);
   mg.levels.push_back(std::move(finest));
+  std::vector<double> sums = row_sums(matrix);
   for (;;) {
     MultigridLevel& fine = mg.levels.back();
     prepare(fine);
@@ -272,10 +295,13 @@ Multigrid build_multigrid(const SymmetricMatrix& matrix) {
     std::int32_t count = 0;
     std::vector<std::int32_t> of = aggregates(fine, count);
     if (count == 0 || static_cast<double>(count) > 0.8 * static_cast<double>(fine.diagonal.size())) break;
+    std::vector<double> coarse_sums(count, 0);
+    for (std::size_t i = 0; i < of.size(); ++i) coarse_sums[of[i]] += sums[i];
+    sums = std::move(coarse_sums);
     MultigridLevel coarse = coarsen(fine, std::move(of), count);
     mg.levels.push_back(std::move(coarse));
   }
-  if (mg.levels.back().diagonal.size() <= 4 * coarsest) mg.coarse_inverse = dense_inverse(mg.levels.back());
+  if (mg.levels.back().diagonal.size() <= 4 * coarsest) mg.coarse_inverse = dense_inverse(mg.levels.back(), sums);
   return mg;
 }
 

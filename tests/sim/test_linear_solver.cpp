@@ -100,5 +100,23 @@ TEST(LinearSolver, SolvesASingularSystemWithABalancedSource) {
   for (std::size_t i = 0; i < b.size(); ++i) EXPECT_NEAR(ax[i], b[i], 1e-4);
 }
 
+TEST(LinearSolver, SolvesSingularSystemsOfAnyScaleAndSize) {
+  for (const double scale : {1e-20, 1e-7, 3e-3, 1.0, 1e9})
+    for (const int n : {21, 22, 23, 24, 25, 26, 40}) {
+      SymmetricMatrix a = grid_laplacian(n, 0);
+      for (double& v : a.diagonal) v *= scale;
+      for (double& v : a.value) v *= scale;
+      std::vector<double> b = random_vector(a.rows()), x(a.rows(), 0);
+      double mean = 0;
+      for (double v : b) mean += v / static_cast<double>(b.size());
+      for (double& v : b) v -= mean;
+      Multigrid multigrid = build_multigrid(a);
+      ConjugateGradientScratch scratch;
+      const SolveReport report = conjugate_gradient(a, b, x, 1e-8, 100, &multigrid, scratch);
+      EXPECT_TRUE(report.converged) << "scale " << scale << ", " << n << " x " << n;
+      EXPECT_LT(report.iterations, 40) << "scale " << scale << ", " << n << " x " << n;
+    }
+}
+
 }  // namespace
 }  // namespace sim
