@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "sim/time_table.h"
+
 namespace sim {
 namespace {
 
@@ -12,15 +14,23 @@ bool moves(const Motion<D>& motion) {
   return !motion.angular_velocity.value.empty();
 }
 
-// Velocity of a wall's point x at a time.
+// How far the wall has slid since the start, and where its centre of rotation is.
 template <int D>
-Vector<D> wall_velocity(const Motion<D>& motion, const Vector<D>& x, double time) {
+Vector<D> slide(const Motion<D>& motion, double time) {
+  Vector<D> way = Vector<D>::Zero();
+  for (int k = 0; k < D; ++k) way[k] = integral(motion.velocity[k], time);
+  return way;
+}
+
+// Velocity of a wall's point x at a time, its centre of rotation being where it is then.
+template <int D>
+Vector<D> wall_velocity(const Motion<D>& motion, const Vector<D>& center, const Vector<D>& x, double time) {
   Vector<D> v = Vector<D>::Zero();
   for (int k = 0; k < D; ++k)
     if (!motion.velocity[k].value.empty()) v[k] = motion.velocity[k].at(time);
   if (motion.angular_velocity.value.empty()) return v;
   const double omega = motion.angular_velocity.at(time);
-  const Vector<D> r = x - motion.center;
+  const Vector<D> r = x - center;
   if constexpr (D == 2)
     v += omega * Vector<2>(-r[1], r[0]);
   else
@@ -28,7 +38,6 @@ Vector<D> wall_velocity(const Motion<D>& motion, const Vector<D>& x, double time
   return v;
 }
 
-// Angle turned between two times, by the midpoint rule over the step.
 template <int D>
 Tensor<D> turn(double angle, const Eigen::Vector3d& axis) {
   if constexpr (D == 2)
@@ -44,15 +53,15 @@ void move_walls(const Scene<D>& scene, State<D>& state, double dt) {
   for (const auto& motion : scene.description.motions) {
     if (!moves(motion)) continue;
     const Body& body = scene.description.bodies[motion.body];
-    const double middle = state.time + 0.5 * dt;
-    Vector<D> slide = Vector<D>::Zero();
-    for (int k = 0; k < D; ++k)
-      if (!motion.velocity[k].value.empty()) slide[k] = dt * motion.velocity[k].at(middle);
+    const Vector<D> before = motion.center + slide(motion, state.time), after = motion.center + slide(motion, state.time + dt);
+    const bool turns = !motion.angular_velocity.value.empty();
     Tensor<D> rotation = Tensor<D>::Identity();
-    if (!motion.angular_velocity.value.empty()) rotation = turn<D>(dt * motion.angular_velocity.at(middle), motion.axis);
+    if (turns)
+      rotation = turn<D>(integral(motion.angular_velocity, state.time + dt) - integral(motion.angular_velocity, state.time), motion.axis);
     for (std::int64_t i = body.first; i < body.first + body.count; ++i) {
-      state.position[i] = motion.center + rotation * (state.position[i] - motion.center) + slide;
-      state.velocity[i] = wall_velocity(motion, state.position[i], state.time + dt);
+      state.position[i] = after + rotation * (state.position[i] - before);
+      if (scene.space.any && !turns) state.position[i] = scene.space.wrapped(state.position[i]);
+      state.velocity[i] = wall_velocity<D>(motion, after, state.position[i], state.time + dt);
     }
   }
 }
@@ -81,12 +90,15 @@ void boundary_surfaces(const Scene<D>& scene, const State<D>& state, Workspace<D
   for (const auto& motion : scene.description.motions) {
     const Body& body = scene.description.bodies[motion.body];
     if (!motion.angular_velocity.value.empty() && body.count > 1) {
-      // The rotation so far, from two of the body's own particles would be fragile: integrate the table instead.
-      double angle = 0;
-      const int pieces = 64;
-      for (int s = 0; s < pieces; ++s) angle += state.time / pieces * motion.angular_velocity.at(state.time * (s + 0.5) / pieces);
-      const Tensor<D> rotation = turn<D>(angle, motion.axis);
-      for (std::int64_t i = body.first; i < body.first + body.count; ++i) work.boundary_normal[i] = rotation * particles.normal[i];
+      // Normals turn with the wall, and its surface, not its particles' centres, is what drags.
+      const Tensor<D> rotation = turn<D>(integral(motion.angular_velocity, state.time), motion.axis);
+      const Vector<D> center = motion.center + slide(motion, state.time);
+      for (std::int64_t i = body.first; i < body.first + body.count; ++i) {
+        work.boundary_normal[i] = rotation * particles.normal[i];
+        work.boundary_velocity[i] +=
+            wall_velocity<D>(motion, center, state.position[i] + particles.depth[i] * work.boundary_normal[i], state.time) -
+            wall_velocity<D>(motion, center, state.position[i], state.time);
+      }
     }
     for (std::int64_t i = body.first; i < body.first + body.count; ++i) work.boundary_velocity[i] += motion.surface_velocity;
   }

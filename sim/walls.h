@@ -6,7 +6,8 @@
 
 namespace sim {
 
-// Moves the walls that have a motion by dt and sets their velocity.
+// Moves the walls that have a motion by dt and sets their velocity. A wall that slides in a periodic domain comes in again on the other
+// side; its centre of rotation moves along with it.
 template <int D>
 void move_walls(const Scene<D>& scene, State<D>& state, double dt);
 
