@@ -66,6 +66,8 @@ void check_step(const Scene<D>& scene, const State<D>& state, double dt) {
   const double l0 = scene.description.spacing;
   if (dt < 1e-4 * scene.description.scheme.maximum_step && dt < state.last_step)
     throw NumericalFailure("a speed ran away: the step fell below a ten-thousandth of scheme.maximum_step");
+  if (state.step > 20 && dt < state.last_step && dt < 1e-4 * state.time / static_cast<double>(state.step))
+    throw NumericalFailure("a speed ran away: the step fell below a ten-thousandth of the mean step so far");
   const auto sound = [&](Index i) {
     const double speed = state.velocity[i].norm();
     return std::isfinite(speed) && state.position[i].allFinite() && std::isfinite(state.pressure[i]) &&
