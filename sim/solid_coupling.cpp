@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/operators.h"
+
 namespace sim {
 using Index = std::ptrdiff_t;
 
@@ -56,6 +58,31 @@ void pressure_force(const Workspace<D>& work, std::span<const double> pressure, 
       force[b] += pressure[work.solid_links[k].unknown] * work.solid_links[k].area;
 }
 
+// Gravity and the loads on the fluid at row i, m/s².
+template <int D>
+Vector<D> body_acceleration(const Scene<D>& scene, const State<D>& state, Index i) {
+  Vector<D> sum = scene.gravity ? scene.gravity->acceleration : Vector<D>(Vector<D>::Zero());
+  for (const auto& load : scene.description.loads)
+    if (load.acceleration && load.body == state.body[i])
+      sum += load_factor(load, state.time) * load.acceleration(state.position[i], state.time);
+  return sum;
+}
+
+// A link pushes with the pressure of its fluid particle, which lies off the surface: what the body forces add on the way to it, rho g . r
+// (half a spacing of water over a plate), acts besides. Without it a floating body rides half a spacing too high.
+template <int D>
+void add_weight_before_surface(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, std::vector<Vector<D>>& force) {
+  const double factor = scene.fluid_particle_volume * scene.lattice.laplacian_factor();
+  for (std::int32_t b = 0; b < static_cast<std::int32_t>(scene.elastic_count); ++b)
+    for (std::int64_t k = work.neighbors.start[b]; k < work.neighbors.start[b + 1]; ++k) {
+      const std::int32_t i = work.neighbors.index[k];
+      if (work.link_weight[k] == 0 || state.kind[i] != Kind::fluid || work.unknown[i] < 0) continue;
+      const Vector<D> r = scene.space.difference(state.position[i], state.position[b]);
+      const double added = scene.density[state.body[i]] * fluid_fraction(scene, work, r, b) * r.dot(body_acceleration(scene, state, i));
+      force[b] += factor * work.link_weight[k] * added * r;
+    }
+}
+
 }  // namespace
 
 template <int D>
@@ -67,6 +94,7 @@ std::int64_t predict_solids(const Scene<D>& scene, State<D>& state, Workspace<D>
   std::vector<Vector<D>> external(state.fluid_force.begin(), state.fluid_force.begin() + n), mean(n);
   if (!work.boundary_force.empty())
     for (Index b = 0; b < n; ++b) external[b] += work.boundary_force[b];
+  if (scene.pressure) add_weight_before_surface(scene, state, work, external);
   SolidStepInput<D> input;
   input.time = state.time, input.duration = dt;
   input.external_force = external;
