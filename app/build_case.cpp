@@ -7,6 +7,7 @@
 
 #include "app/case_parts.h"
 #include "app/loaded_surface.h"
+#include "app/region_rows.h"
 #include "app/to_geometry.h"
 
 namespace app {
@@ -15,82 +16,6 @@ namespace {
 template <int D>
 sim::Vector<D> reduced(const Eigen::Vector3d& v) {
   return v.head<D>();
-}
-
-// A region's shape; a box without thickness gets a little.
-geometry::Shape region_shape(const ShapeSpec& region, int dimension, double spacing) {
-  ShapeSpec padded = region;
-  for (int axis = 0; axis < 3; ++axis)
-    if (padded.type == ShapeType::box && padded.max[axis] - padded.min[axis] < 1e-6 * spacing) {
-      padded.min[axis] -= 1e-6 * spacing;
-      padded.max[axis] += 1e-6 * spacing;
-    }
-  return to_geometry(padded, dimension, spacing);
-}
-
-// Rows (relative to the body) whose centre lies in the region; where the region is thinner than a particle, those whose cell it cuts.
-std::vector<std::int64_t> rows_in_region(const ShapeSpec& region, const BodyParticles& body, int dimension, double spacing) {
-  const geometry::Shape shape = region_shape(region, dimension, spacing);
-  std::vector<std::int64_t> inside, cut;
-  for (std::size_t i = 0; i < body.size(); ++i) {
-    const double distance = geometry::signed_distance(shape, body.position[i], dimension);
-    if (distance <= 1e-9 * spacing) inside.push_back(static_cast<std::int64_t>(i));
-    if (distance <= 0.5001 * spacing) cut.push_back(static_cast<std::int64_t>(i));
-  }
-  const std::vector<std::int64_t>& found = inside.empty() ? cut : inside;
-  if (found.empty())
-    refuse(region.spot, "holds no particle of body \"" + body.name + "\"", "regions are in the initial configuration, in m");
-  return found;
-}
-
-// A force on a region beyond the particles' centres (a face, a tip) acts there: each share f of a row at distance d from the region becomes
-// f (1 + d/s) on the row and -f d/s on the one behind it at distance s, which has the same resultant and moment.
-void move_shares_to_region(const ShapeSpec& region, const BodyParticles& body, int dimension, double spacing,
-                           std::vector<std::int64_t>& rows, std::vector<double>& share) {
-  const geometry::Shape shape = region_shape(region, dimension, spacing);
-  const std::size_t count = rows.size();
-  for (std::size_t k = 0; k < count; ++k) {
-    const Eigen::Vector3d x = body.position[static_cast<std::size_t>(rows[k])];
-    const double away = geometry::signed_distance(shape, x, dimension);
-    if (away <= 1e-9 * spacing) continue;
-    const Eigen::Vector3d back = geometry::distance_gradient(shape, x, dimension, 1e-4 * spacing);
-    std::size_t behind = body.size();
-    double nearest = 0.3 * spacing;
-    for (std::size_t j = 0; j < body.size(); ++j) {
-      const double miss = (body.position[j] - x - spacing * back).norm();
-      if (miss < nearest) nearest = miss, behind = j;
-    }
-    if (behind == body.size()) continue;
-    const double lever = away / (body.position[behind] - x).dot(back) * share[k];
-    share[k] += lever;
-    rows.push_back(static_cast<std::int64_t>(behind));
-    share.push_back(-lever);
-  }
-}
-
-// Rows of a body's surface that a pressure acts on: the surface point that the particle carries lies in the region.
-std::vector<std::int64_t> surface_rows(const std::optional<ShapeSpec>& region, const BodyParticles& body, int dimension, double spacing) {
-  std::vector<std::int64_t> rows;
-  if (body.kind == sim::Kind::shell) {
-    if (region) return rows_in_region(*region, body, dimension, spacing);
-    rows.resize(body.size());
-    std::iota(rows.begin(), rows.end(), std::int64_t{0});
-    return rows;
-  }
-  std::optional<geometry::Shape> shape;
-  if (region) shape = to_geometry(*region, dimension, spacing);
-  for (std::size_t i = 0; i < body.size(); ++i) {
-    const Eigen::Vector3d& area = body.surface_area[i];
-    if (area.norm() < 1e-12 * std::pow(spacing, dimension - 1)) continue;
-    const Eigen::Vector3d point = body.position[i] + body.depth[i] * area.normalized();
-    const double slack = 1e-3 * spacing;
-    if (!shape || geometry::signed_distance(*shape, point, dimension) <= slack ||
-        geometry::signed_distance(*shape, body.position[i], dimension) <= slack)
-      rows.push_back(static_cast<std::int64_t>(i));
-  }
-  if (rows.empty() && region)
-    refuse(region->spot, "holds no part of the surface of body \"" + body.name + "\"", "let it enclose the surface");
-  return rows;
 }
 
 template <int D>
@@ -247,6 +172,27 @@ struct Builder {
     }
   }
 
+  // A force on a region that holds no particle's centre but a part of a solid's surface (an end face) acts there as an even traction: rows,
+  // and shares and offsets in load.share (sim/solid_loads.h). False where the region holds no surface.
+  bool set_traction(const LoadSpec& spec, int index, sim::Load<D>& load) {
+    const BodyParticles& part = parts.bodies[index];
+    const geometry::Shape region = region_shape(*spec.region, D, scene.spacing);
+    for (const Eigen::Vector3d& x : part.position)
+      if (geometry::signed_distance(region, x, D) <= 1e-9 * scene.spacing) return false;
+    const geometry::Shape body = to_geometry(scene.bodies[part.source].shape, D, scene.spacing);
+    const LoadedSurface surface = loaded_surface(body, part, region, D, scene.spacing);
+    if (surface.row.empty()) return false;
+    double whole = 0;
+    for (const Eigen::Vector3d& area : surface.area) whole += area.norm();
+    load.rows = surface.row;
+    load.share.clear();
+    for (std::size_t k = 0; k < surface.row.size(); ++k) {
+      load.share.push_back(surface.area[k].norm() / whole);
+      for (int axis = 0; axis < D; ++axis) load.share.push_back(surface.offset[k][axis]);
+    }
+    return true;
+  }
+
   sim::Load<D> make_load(const LoadSpec& spec, int index, const std::vector<std::int64_t>& rows, double whole) {
     const BodyParticles& part = parts.bodies[index];
     sim::Load<D> load;
@@ -256,7 +202,8 @@ struct Builder {
     load.rows = rows;
     for (std::int64_t row : rows) load.share.push_back(part.volume[row] / mine);
     if (spec.pressure && spec.region && part.kind == sim::Kind::elastic) set_loaded_surface(spec, index, load);
-    if (spec.force && spec.region) move_shares_to_region(*spec.region, part, D, scene.spacing, load.rows, load.share);
+    if (spec.force && spec.region && !(part.kind == sim::Kind::elastic && set_traction(spec, index, load)))
+      move_shares_to_region(*spec.region, part, D, scene.spacing, load.rows, load.share);
     for (std::int64_t& row : load.rows) row += description().bodies[index].first;
     if (spec.force) load.force = reduced<D>(*spec.force) * (mine / whole);
     if (spec.acceleration) {

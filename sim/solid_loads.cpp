@@ -56,7 +56,12 @@ void external_loads(const SolidElasticity<D>& solid, std::span<const Load<D>> lo
     for (std::size_t r = 0; r < load.rows.size(); ++r) {
       const auto i = static_cast<std::size_t>(load.rows[r]);
       if (i >= n) continue;  // a shell's row
-      if (load.force) force[i] += factor * load.share[r] * *load.force;
+      if (load.force && load.share.size() == (1 + D) * load.rows.size()) {
+        const double* share = load.share.data() + (1 + D) * r;
+        add_force_at<D>(solid, i, Eigen::Map<const Vector<D>>(share + 1), factor * *share * *load.force, force);
+      } else if (load.force) {
+        force[i] += factor * load.share[r] * *load.force;
+      }
       if (load.acceleration) force[i] += factor * solid.mass[i] * load.acceleration(position[i], time);
       if (!load.pressure) continue;
       if (load.share.size() == 2 * D * load.rows.size())

@@ -12,7 +12,8 @@ namespace sim {
 
 // Adds to force (N; 2-D: N/m), for rows [0, n) of the solid, at a time (s; static mode: the load factor):
 //   gravity       m g
-//   force         share * force * factor, a dead load
+//   force         share * force * factor, a dead load; with 1 + D numbers a row in `share` (share, offset from the particle at rest, m) it
+//                 acts on the surface, at that offset
 //   acceleration  m a(x, t) * factor; a load without rows acts on its whole body
 //   pressure      -p cof(F) A at the surface (Nanson), following the deformed surface; A = surface_area
 // Forces through the surface act at the surface: what a particle carries at depth d below it goes to the particle and its neighbours such
