@@ -1,6 +1,7 @@
 #include "app/dry_case.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -44,7 +45,7 @@ TEST(DryCase, holds_leaflets_and_the_wall_beside_them_and_nothing_else) {
 // the closed valve is p A; the tissue carries it to its attachment, so the stress is of the order p R / (2 h) (Laplace): here 12 kPa x
 // 11.7 mm / (2 x 0.5 mm) = 140 kPa. A softer valve yields more.
 TEST(DryCase, closes_under_pressure_and_bears_it) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "cusp_dry.h5";
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / ("cusp_dry_" + std::to_string(::getpid()) + ".h5");
   double moved[2] = {0, 0};
   for (const int stiff : {0, 1}) {
     RunCaseOptions options;
