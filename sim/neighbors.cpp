@@ -46,6 +46,20 @@ void lay_out(CellGrid<D>& grid, std::span<const Vector<D>> position, const Domai
     grid.edge[k] = std::max(extent / count, grid.periodic[k] ? 0.0 : grid.cell) * (grid.periodic[k] ? 1.0 : 1.0 + 1e-9);
   }
   grid.origin = low;
+  // One particle far away must not make a grid that no memory holds: coarser cells along the longest axes then.
+  const double most = std::max(2e7, 8.0 * static_cast<double>(position.size()));
+  for (;;) {
+    double total = 1;
+    int longest = 0;
+    for (int k = 0; k < D; ++k) {
+      total *= grid.cells[k];
+      if (grid.cells[k] > grid.cells[longest]) longest = k;
+    }
+    if (total <= most) break;
+    const int fewer = (grid.cells[longest] + 1) / 2;
+    grid.edge[longest] *= static_cast<double>(grid.cells[longest]) / fewer;
+    grid.cells[longest] = fewer;
+  }
 }
 
 template <int D>

@@ -52,5 +52,18 @@ TEST(Neighbors, MatchAllPairsAcrossPeriodicFaces) {
   compare_with_all_pairs<3>(true);
 }
 
+TEST(Neighbors, OneParticleFarAwayAsksForNoMoreMemory) {
+  std::vector<Vector<3>> position{{0, 0, 0}, {0.1, 0, 0}, {5, 5, 5}, {1e9, -1e9, 1e9}};
+  const std::vector<Search> search(position.size(), Search::all);
+  const std::vector<std::uint8_t> is_fluid(position.size(), 1);
+  Neighbors neighbors;
+  CellGrid<3> grid;
+  find_neighbors<3>(neighbors, grid, position, search, is_fluid, Domain<3>{}, 0.2);
+  EXPECT_LE(grid.start.size(), 20'000'001u);
+  ASSERT_EQ(neighbors.of(0).size(), 1u);
+  EXPECT_EQ(neighbors.of(0)[0], 1);
+  EXPECT_EQ(neighbors.of(2).size() + neighbors.of(3).size(), 0u);
+}
+
 }  // namespace
 }  // namespace sim
