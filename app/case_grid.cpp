@@ -1,12 +1,13 @@
 #include "app/case_grid.h"
 
 #include <fcntl.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <map>
 #include <thread>
@@ -14,8 +15,6 @@
 #include "app/progress.h"
 #include "app/scene_error.h"
 #include "sim/run_file.h"
-
-extern char** environ;
 
 namespace app {
 namespace {
@@ -30,20 +29,21 @@ bool finished_before(const GridCase& one) {
   }
 }
 
-// Starts a child whose output goes to log.txt in the case's folder.
+// Starts a child whose output goes to log.txt in the case's folder. It is asked to stop, as by Ctrl-C, should this process die before it:
+// else it would go on alone, and the sweep that is started again would find its run file taken.
 pid_t start(const std::vector<std::string>& words, const std::filesystem::path& folder) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
   const std::string log = (folder / "log.txt").string();
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
-  pid_t child = -1;
-  const int status = posix_spawn(&child, words.front().c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  return status == 0 ? child : -1;
+  const pid_t parent = getpid(), child = fork();
+  if (child != 0) return child;
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != parent) _exit(1);  // it died meanwhile
+  const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  if (file < 0 || dup2(file, STDOUT_FILENO) < 0 || dup2(file, STDERR_FILENO) < 0) _exit(1);
+  execv(arguments.front(), arguments.data());
+  _exit(127);
 }
 
 }  // namespace
@@ -89,11 +89,14 @@ std::vector<GridCase> grid_cases(const std::vector<Variation>& variations, const
   return cases;
 }
 
+int threads_of_case(const GridOptions& options) {
+  if (options.threads > 0) return options.threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / std::max(1, options.jobs));
+}
+
 std::vector<std::string> case_command(const GridCase& one, const GridOptions& options, const std::string& program) {
   std::vector<std::string> words{program, "run", options.scene.string(), "-o", one.run().string(), "--continue", "--quiet"};
-  const int threads = options.threads > 0 ? options.threads
-                                          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / std::max(1, options.jobs));
-  words.insert(words.end(), {"--threads", std::to_string(threads)});
+  words.insert(words.end(), {"--threads", std::to_string(threads_of_case(options))});
   for (const auto* settings : {&options.settings, &one.settings})
     for (const std::string& setting : *settings) words.insert(words.end(), {"--set", setting});
   return words;
@@ -106,6 +109,7 @@ std::vector<int> run_grid(const std::vector<GridCase>& cases, const GridOptions&
   std::vector<int> codes(cases.size(), -1);
   std::map<pid_t, std::size_t> running;
   std::size_t next = 0, done = 0;
+  bool told = false;
   const auto over = [&] { return stop.load() || (options.budget_seconds > 0 && now_seconds() - started > options.budget_seconds); };
   while (!running.empty() || (next < cases.size() && !over())) {
     while (next < cases.size() && static_cast<int>(running.size()) < std::max(1, options.jobs) && !over()) {
@@ -120,15 +124,25 @@ std::vector<int> run_grid(const std::vector<GridCase>& cases, const GridOptions&
       running[child] = index;
     }
     if (running.empty()) continue;
+    if (stop.load() && !told) {  // a signal to this process alone: the children keep what they have and end too
+      for (const auto& [child, index] : running) kill(child, SIGTERM);
+      told = true;
+    }
     int status = 0;
-    const pid_t ended = waitpid(-1, &status, 0);
+    const pid_t ended = waitpid(-1, &status, WNOHANG);
     const auto found = running.find(ended);
-    if (found == running.end()) continue;
+    if (found == running.end()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      continue;
+    }
     codes[found->second] = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
     ++done;
     if (!options.quiet)
       std::fprintf(stderr, "%zu of %zu: %s %s, %s so far\n", done, cases.size(), cases[found->second].folder.filename().string().c_str(),
-                   codes[found->second] == 0 ? "finished" : "failed", duration_text(now_seconds() - started).c_str());
+                   codes[found->second] == 0 ? "finished"
+                   : told                    ? "stopped"
+                                             : "failed",
+                   duration_text(now_seconds() - started).c_str());
     running.erase(found);
   }
   return codes;

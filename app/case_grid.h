@@ -29,7 +29,10 @@ struct GridOptions {
   bool quiet = false;
   double budget_seconds = 0;  // no case is started after it; 0 = none
 };
-// Exit code a case (0 also for cases that were finished before); -1 = not started (budget, Ctrl-C).
+// Threads of one case: as asked for, else this machine's, divided by the jobs.
+int threads_of_case(const GridOptions& options);
+// Exit code a case (0 also for cases that were finished before); -1 = not started (budget, Ctrl-C). A signal that stops this process stops
+// the running cases too: they keep what they have, and the next call goes on with them.
 std::vector<int> run_grid(const std::vector<GridCase>& cases, const GridOptions& options);
 
 // The command line of one case, for job scripts.

@@ -18,7 +18,7 @@ namespace {
 struct Options {
   std::string scene, output, list;
   std::vector<std::string> vary, settings;
-  int jobs = 1, threads = 0;
+  int jobs = 0, threads = 0;
   bool slurm = false, wait = false, collect = false, quiet = false, json = false;
 };
 
@@ -28,7 +28,8 @@ std::string quoted(const std::string& word) {
   return result + "'";
 }
 
-// A job array: each task runs one case, and goes on with it where it was started before.
+// A job array: each task runs one case, and goes on with it where it was started before. Without --jobs Slurm decides how many run at a
+// time; without --threads each takes one processor, for this machine's number says nothing of the cluster's.
 void write_slurm(const std::vector<GridCase>& cases, const GridOptions& grid, const std::filesystem::path& folder) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
   std::ofstream file(folder / "sweep.slurm");
@@ -93,6 +94,7 @@ int sweep(const Options& options) {
   GridOptions grid{scene, options.settings, options.jobs, options.threads, options.quiet, 0};
   std::vector<int> codes;
   if (options.slurm) {
+    grid.threads = std::max(1, grid.threads);
     write_slurm(cases, grid, folder);
     if (!submit_slurm(folder, options.wait)) return 0;
     codes = codes_found(cases);
@@ -120,8 +122,10 @@ void add_sweep_command(CLI::App& program, int& exit_code) {
   command->add_option("--vary", options->vary, "KEY=V1,V2,...; may be repeated: all combinations are run")->allow_extra_args(false);
   command->add_option("--set", options->settings, "KEY=VALUE for all cases; may be repeated")->allow_extra_args(false);
   command->add_option("-o,--output", options->output, "folder (default: sweep-SCENE)");
-  command->add_option("--jobs", options->jobs, "cases at a time")->check(CLI::Range(1, 4096));
-  command->add_option("--threads", options->threads, "threads of each case (default: all, divided by --jobs)")->check(CLI::Range(1, 4096));
+  command->add_option("--jobs", options->jobs, "cases at a time (default: 1; with --slurm as many as Slurm gives)")
+      ->check(CLI::Range(1, 4096));
+  command->add_option("--threads", options->threads, "threads of each case (default: all, divided by --jobs; with --slurm 1)")
+      ->check(CLI::Range(1, 4096));
   command->add_flag("--slurm", options->slurm, "submit the cases as a Slurm job array instead of running them here");
   command->add_flag("--wait", options->wait, "with --slurm: wait until the jobs have ended, then make the table");
   command->add_flag("--collect", options->collect, "run nothing: make the table of what is there");
