@@ -1,9 +1,11 @@
 # Run by pvpython: reads RUN.xmf and prints the largest von Mises stress of all its time steps, and how many there are.
+import os
 import sys
 from paraview import servermanager
 from paraview.simple import OpenDataFile
 
-reader = OpenDataFile(sys.argv[1])
+# Its Xdmf reader joins a bare file name to the data file's without a slash between them.
+reader = OpenDataFile(os.path.abspath(sys.argv[1]))
 reader.UpdatePipelineInformation()
 times = list(reader.TimestepValues)
 peak = 0.0
