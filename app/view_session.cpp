@@ -67,6 +67,7 @@ void ViewSession::open(const fs::path& path) {
   job_ = Job::none;
   import_picture_.reset();
   placed_.reset();
+  ahead_ = {};
   if (ending == ".h5") {
     model.open_run(path);
     first_run_ = path;
@@ -89,6 +90,7 @@ void ViewSession::place_scene(const fs::path& path) {
   start = now = knobs_of(*scene_);
   first_run_.clear();
   placed_.reset();
+  ahead_ = {};
   import_picture_.reset();
   start_job(Job::place,
             with_settings({"run", scene_path_.string(), "-o", (folder_ / "first.h5").string(), "--set", "time.end=1e-7"}, scene_settings_),
@@ -101,11 +103,20 @@ void ViewSession::read_case_of_run() {
   try {
     scene_ = scene_of_run(fs::absolute(first_run_), model.run().reader().header(), {});
     start = now = knobs_of(*scene_);
+    place_ahead();
   } catch (const std::exception& error) {
     scene_.reset();
     message = std::string("it can be looked at but not replayed: ") + error.what();
   }
 }
+
+// A valve's particles as the case has them, while the user still looks: the first preview then need not wait.
+void ViewSession::place_ahead() {
+  if (!scene_->patient || scene_->dimension != 3) return;
+  ahead_ = std::async(std::launch::async, [scene = *scene_] { return place_case(scene); });
+}
+
+bool ViewSession::placing() const { return ahead_.valid() && ahead_.wait_for(std::chrono::seconds(0)) != std::future_status::ready; }
 
 void ViewSession::start_job(Job job, const std::vector<std::string>& arguments, const fs::path& result) {
   child_.reset();
@@ -183,6 +194,7 @@ void ViewSession::finish_job() {
     if (first_run_.empty()) first_run_ = result_;
     message = code == 0 ? "simulated: " + result_.filename().string() : "stopped; " + result_.filename().string() + " keeps what there is";
   } else if (code == 0) {
+    if (job == Job::place && scene_) place_ahead();
     message = "ready";
   } else {
     message = last.empty() ? "the background run failed" : last;
@@ -202,7 +214,7 @@ double ViewSession::preview(double pressure, const std::function<void(double)>& 
                               : scene_of_run(fs::absolute(first_run_), sim::RunReader(first_run_).header(), settings);
   const std::vector<std::string> placing = placing_settings(settings);
   if (!placed_ || placing != placed_for_) {
-    placed_ = place_case(scene);
+    placed_ = ahead_.valid() && placing.empty() ? ahead_.get() : place_case(scene);
     placed_for_ = placing;
     placing_seconds_ = wall_seconds() - began;
   }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,9 +41,11 @@ class ViewSession {
   void cancel();  // what was simulated stays
 
   // Leaflets alone under a pressure difference (dry_case.h), here and now: `step` is called after every step of it with the part done.
-  // Returns the seconds from the call to the new valve. Particles that the sliders do not move are placed once. Throws SceneError.
+  // Returns the seconds from the call to the new valve. Particles that the sliders do not move are placed once, from the moment on at which
+  // the case is opened, in the background. Throws SceneError.
   double preview(double pressure, const std::function<void(double)>& step);
-  double placing_seconds() const { return placing_seconds_; }  // of the placement that later previews reuse; 0 before the first
+  double placing_seconds() const { return placing_seconds_; }  // that previews waited for the placement; 0 before the first
+  bool placing() const;                                        // in the background still
 
   // Of a mesh: what import understood, and the way on. Shifts in m along the planes' normals, on top of what was found.
   const std::optional<render::Image>& import_picture() const { return import_picture_; }
@@ -56,6 +59,7 @@ class ViewSession {
   void start_job(Job job, const std::vector<std::string>& arguments, const std::filesystem::path& result);
   void finish_job();
   void read_case_of_run();
+  void place_ahead();
   void place_scene(const std::filesystem::path& path);
   std::string program_;
   std::filesystem::path folder_;  // for what need not be kept
@@ -68,6 +72,7 @@ class ViewSession {
   int replays_ = 0, previews_ = 0;
   std::shared_ptr<const CaseParticles> placed_;
   std::vector<std::string> placed_for_;
+  std::future<std::shared_ptr<const CaseParticles>> ahead_;  // the case as it was opened, being placed
   double placing_seconds_ = 0;
   std::optional<render::Image> import_picture_;
 };
