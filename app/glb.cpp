@@ -42,7 +42,7 @@ class Builder {
     if (!surface.value.empty()) {
       std::vector<float> color;
       for (const float value : surface.value) {
-        const render::Color c = render::map_color(render::Colormap::viridis, value / std::max(top, 1e-30));
+        const render::Color c = render::map_color(render::Colormap::inferno, value / std::max(top, 1e-30));
         for (int k = 0; k < 3; ++k) color.push_back(linear(c[k]));
       }
       primitive["attributes"]["COLOR_0"] = add(color, vertices, floats, "VEC3", surface.points.size());

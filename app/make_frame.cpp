@@ -60,8 +60,7 @@ std::vector<bool> held_rows(const sim::RunHeader::BodyInfo& body, const std::vec
   return held;
 }
 
-// The leaflets' triangles without those that are held at all three corners: there a leaflet is anchored in the wall, and what is drawn
-// beyond the attachment would not be tissue.
+// See make_frame.h.
 std::vector<sim::RunHeader::ShellInfo> visible_shells(const sim::RunHeader& header, const std::vector<sim::RunFrame>& seen) {
   std::vector<sim::RunHeader::ShellInfo> shells = header.shells;
   if (!header.valve || header.dimension == 2) return shells;
@@ -96,6 +95,8 @@ std::vector<std::vector<std::vector<std::int32_t>>> moving_neighbors(const sim::
 }
 
 }  // namespace
+
+std::vector<sim::RunHeader::ShellInfo> visible_shells(const sim::RunReader& run) { return visible_shells(run.header(), frames_over(run)); }
 
 int scale_slot(const std::string& field) {
   return field_index(field) + (is_fluid_field(field) ? 0 : static_cast<int>(fluid_fields.size()));

@@ -33,6 +33,10 @@ struct View {
 // The choice spelt out for a run. Throws std::invalid_argument naming what is unknown and what there is. `alone`: no other run beside it.
 std::vector<View> chosen_views(const PictureChoice& choice, const sim::RunHeader& header, bool alone);
 
+// A run's sheets as pictures show them: of a valve's leaflets, without the triangles that are held at all three corners. Those are anchored
+// in the wall, and what lies beyond the attachment is no tissue.
+std::vector<sim::RunHeader::ShellInfo> visible_shells(const sim::RunReader& run);
+
 // Makes the frames of one run; the reader must outlive it.
 class FrameMaker {
  public:

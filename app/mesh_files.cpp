@@ -132,7 +132,7 @@ void write_gltf(const ExportSurface& surface, const std::filesystem::path& file)
     const std::vector<float>& values = surface.fields.front().values;
     const float top = std::max(1e-30f, *std::max_element(values.begin(), values.end()));
     for (float value : values) {
-      const render::Color c = render::map_color(render::Colormap::viridis, std::clamp(value / top, 0.0f, 1.0f));
+      const render::Color c = render::map_color(render::Colormap::inferno, std::clamp(value / top, 0.0f, 1.0f));
       for (int k = 0; k < 3; ++k) color.push_back(std::pow(c[k], 2.2f));  // glTF's vertex colours are linear
     }
     const std::size_t at = view(append(buffer, color), color.size() * 4, 34962);

@@ -2,11 +2,12 @@
 #include "app/report_model.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "app/base64.h"
 #include "app/glb.h"
+#include "app/make_frame.h"
 #include "app/movie.h"
+#include "app/valve_moments.h"
 
 namespace app {
 namespace {
@@ -38,11 +39,17 @@ GlbSurface vessel(const sim::RunSurface& lumen) {
 ReportMoments report_moments(const ClinicalFigures& clinical) {
   const sim::ValveSummary& summary = clinical.summary;
   ReportMoments moments;
-  const sim::Curve area = clinical.series.curve("orifice_area"), stress = clinical.series.curve("leaflet_stress_p99");
-  moments.open = sim::largest(area, summary.beat_start, summary.beat_end).time;
-  const double shut = std::isfinite(summary.times.closed) ? summary.times.closed : moments.open;
-  moments.closed = sim::smallest(area, shut, summary.beat_end).time;
+  const sim::Curve area = clinical.series.curve("orifice_area"), flow = clinical.series.curve("valve_flow"),
+                   stress = clinical.series.curve("leaflet_stress_p99");
+  moments.open = moments.closed = sim::largest(area, summary.beat_start, summary.beat_end).time;
   moments.stressed = sim::largest(stress, summary.beat_start, summary.beat_end).time;
+  // Open and closed at rest are the pictures' own, within the beat that the figures are of.
+  std::vector<double> time, areas, flows;
+  for (std::size_t i = 0; i < area.time.size(); ++i) {
+    if (area.time[i] < summary.beat_start || area.time[i] > summary.beat_end) continue;
+    time.push_back(area.time[i]), areas.push_back(area.value[i]), flows.push_back(sim::value_at(flow, area.time[i]));
+  }
+  if (const auto found = valve_moments(time, areas, flows)) moments.open = found->open, moments.closed = found->closed;
   return moments;
 }
 
@@ -54,13 +61,14 @@ nlohmann::json report_model(const sim::RunReader& run, const ReportMoments& mome
   std::vector<GlbScene> scenes;
   const bool with_vessel = !run.header().lumen.triangles.empty() && run.header().lumen.triangles.size() < heavy;
   if (with_vessel) surfaces.push_back(vessel(run.header().lumen));
+  const std::vector<sim::RunHeader::ShellInfo> shells = visible_shells(run);
   std::vector<float> values;
   nlohmann::json when = nlohmann::json::array();
   for (const auto& [name, time] :
        {std::pair{"open", moments.open}, std::pair{"closed", moments.closed}, std::pair{"largest stress", moments.stressed}}) {
     const sim::RunFrame frame = run.frame(nearest_frame(times, time));
     GlbScene scene{name, {}};
-    for (const sim::RunHeader::ShellInfo& shell : run.header().shells) {
+    for (const sim::RunHeader::ShellInfo& shell : shells) {
       scene.surfaces.push_back(surfaces.size());
       surfaces.push_back(leaflet(frame, shell, run.header().bodies[static_cast<std::size_t>(shell.body)].name + ", " + name));
       values.insert(values.end(), surfaces.back().value.begin(), surfaces.back().value.end());

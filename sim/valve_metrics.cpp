@@ -90,7 +90,9 @@ double jet_speed(const ValveFrame& frame, std::span<const Vector3d> position, st
   return quantile(std::move(speed), 0.995);
 }
 
-double effective_orifice_area(double flow, double jet) { return flow > 0 && jet >= 0.2 ? flow / jet : 0; }
+double effective_orifice_area(double flow, double jet, double largest_opening, double spacing) {
+  return flow > 0 && jet >= 0.2 && largest_opening >= 4 * spacing * spacing ? flow / jet : 0;
+}
 
 std::vector<double> wall_shear_stress(const ValveSheet& sheet, const ValveMoment& moment, const Rheology& rheology) {
   const double reach = 1.8 * sheet.spacing, half = 0.5 * sheet.thickness;
@@ -164,7 +166,7 @@ std::vector<NamedValue> valve_metrics(const ValveSheet& sheet, const ValveMoment
   const MMode echo = m_mode(sheet, moment.position);
   add("m_mode.first", "m", echo.first), add("m_mode.second", "m", echo.second);
   add("valve_flow", "m3/s", moment.flow), add("pressure_difference", "Pa", moment.pressure_difference);
-  add("effective_orifice_area", "m2", effective_orifice_area(moment.flow, jet));
+  add("effective_orifice_area", "m2", effective_orifice_area(moment.flow, jet, orifice.largest_opening, sheet.spacing));
   const std::vector<double> shear = wall_shear_stress(sheet, moment, rheology);
   double mean = 0, count = 0;
   for (std::size_t i = 0; i < sheet.size(); ++i)

@@ -31,8 +31,9 @@ std::vector<NamedValue> valve_metrics(const ValveSheet& sheet, const ValveMoment
 
 // 99.5th percentile of the blood's speed from the annulus to 15 mm beyond the commissures, m/s.
 double jet_speed(const ValveFrame& frame, std::span<const Eigen::Vector3d> position, std::span<const Eigen::Vector3d> velocity);
-// Continuity: flow / jet speed, m2; 0 where the flow is not forward or the jet slower than 0.2 m/s (then it means nothing).
-double effective_orifice_area(double flow, double jet_speed);
+// Continuity: flow / jet speed, m2; 0 where it means nothing: the flow is not forward, the jet slower than 0.2 m/s, or the largest opening
+// smaller than 4 spacings squared (closed: what flow there is rings).
+double effective_orifice_area(double flow, double jet_speed, double largest_opening, double spacing);
 // Wall shear stress on each sheet row, Pa: the larger of its two sides. On a side, the blood's velocity relative to the row is fitted by
 // u_t = g d through the surface (half the tissue's thickness off the mid-surface) over the particles within 1.8 l0; tau = mu(|g|) |g|.
 std::vector<double> wall_shear_stress(const ValveSheet& sheet, const ValveMoment& moment, const Rheology& rheology);

@@ -111,9 +111,11 @@ TEST(ValveMetrics, JetSpeedLooksBetweenAnnulusAndBeyondTheCommissures) {
 
 // Plug flow of speed v through an opening A: the effective orifice area is A.
 TEST(ValveMetrics, EffectiveOrificeAreaOfPlugFlow) {
-  EXPECT_NEAR(sim::effective_orifice_area(2e-4 * 1.1, 1.1), 2e-4, 1e-18);
-  EXPECT_EQ(sim::effective_orifice_area(-1e-5, 1.1), 0);
-  EXPECT_EQ(sim::effective_orifice_area(1e-6, 0.1), 0);
+  EXPECT_NEAR(sim::effective_orifice_area(2e-4 * 1.1, 1.1, 2.5e-4, 1e-3), 2e-4, 1e-18);
+  EXPECT_EQ(sim::effective_orifice_area(-1e-5, 1.1, 2.5e-4, 1e-3), 0);
+  EXPECT_EQ(sim::effective_orifice_area(1e-6, 0.1, 2.5e-4, 1e-3), 0);
+  EXPECT_EQ(sim::effective_orifice_area(1e-5, 1.1, 3.9e-6, 1e-3), 0);  // closed, and the flow rings
+  EXPECT_GT(sim::effective_orifice_area(1e-5, 1.1, 4.1e-6, 1e-3), 0);
 }
 
 // Stress by region: one value a region, set by hand; the clamp's is never reported.
