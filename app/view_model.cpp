@@ -273,7 +273,9 @@ std::vector<ViewModel::Picture> ViewModel::pictures() {
   };
   const bool both = ghost_ && shown.beside && !ghost_->times().empty();
   if (both) add(*ghost_, ghost_time(), "before");
-  add(*main_, time_, both ? "after" : "");
+  const sim::RunHeader& header = main_->reader().header();
+  const bool dry = header.valve && header.ports.empty();
+  add(*main_, time_, both && dry ? "after, without blood" : both ? "after" : dry ? "without blood" : "");
   return all;
 }
 

@@ -92,12 +92,13 @@ void draw_comparison(ViewSession& session) {
   if (figures.empty()) return;
   heading("What changed");
   if (!ImGui::BeginTable("changed", 4, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg)) return;
-  for (const char* name : {"", "before", "after", "change"}) ImGui::TableSetupColumn(name);
+  for (const char* name : {"", "before", "after", "change"})  // names give way to the numbers, in as many lines as they need
+    ImGui::TableSetupColumn(name, *name ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableHeadersRow();
   for (const ComparedFigure& figure : figures) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted((figure.name + " [" + figure.units + "]").c_str());
+    ImGui::TextWrapped("%s [%s]", figure.name.c_str(), figure.units.c_str());
     for (const double value : {figure.values.front(), figure.values.back()}) {
       ImGui::TableNextColumn();
       if (std::isfinite(value)) ImGui::Text("%.3g", value);
