@@ -1,5 +1,6 @@
 #include "sim/ledger.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -10,7 +11,7 @@
 namespace sim {
 
 template <int D>
-void account_fluid(const Scene<D>& scene, State<D>& state, const Workspace<D>& work, double dt) {
+void account_fluid(const Scene<D>& scene, State<D>& state, const Workspace<D>& work, std::span<const Vector<D>> from, double dt) {
   const std::size_t first = static_cast<std::size_t>(scene.first_fluid), count = state.size() - first;
   const auto fluid = [&](std::size_t k) { return state.kind[first + k] == Kind::fluid; };
   if (scene.viscosity)
@@ -20,44 +21,65 @@ void account_fluid(const Scene<D>& scene, State<D>& state, const Workspace<D>& w
                                    return work.viscosity[first + k] * rate * rate;
                                  });
   const auto mass = [&](std::size_t k) { return scene.density[state.body[first + k]] * scene.fluid_particle_volume; };
+  const auto way = [&](std::size_t k) { return Vector<D>(state.position[first + k] - from[first + k]); };
   if (scene.gravity) {
     const Vector<D>& gravity = scene.gravity->acceleration;
-    state.ledger.load_work +=
-        dt * ordered_sum(count, [&](std::size_t k) { return fluid(k) ? mass(k) * gravity.dot(state.velocity[first + k]) : 0.0; });
+    state.ledger.load_work += ordered_sum(count, [&](std::size_t k) { return fluid(k) ? mass(k) * gravity.dot(way(k)) : 0.0; });
+    if (scene.solids)  // beyond the way that predict_solids counted
+      for (std::size_t b = 0; b < static_cast<std::size_t>(scene.elastic_count); ++b)
+        state.ledger.load_work += scene.solids->mass[b] * gravity.dot(state.position[b] - work.solid_position[b]);
   }
   for (const auto& load : scene.description.loads) {
     if (!load.acceleration || scene.description.bodies[load.body].kind != Kind::fluid) continue;
-    double power = 0;  // formulas are evaluated one after the other
+    double sum = 0;  // formulas are evaluated one after the other
     for (std::size_t k = 0; k < count; ++k)
-      if (fluid(k) && state.body[first + k] == load.body)
-        power += mass(k) * load.acceleration(state.position[first + k], state.time).dot(state.velocity[first + k]);
-    state.ledger.load_work += dt * load_factor(load, state.time) * power;
+      if (fluid(k) && state.body[first + k] == load.body) sum += mass(k) * load.acceleration(from[first + k], state.time).dot(way(k));
+    state.ledger.load_work += load_factor(load, state.time) * sum;
   }
 }
 
 template <int D>
-void account_shell_loads(const Scene<D>& scene, State<D>& state, std::span<const Vector<D>> outer, std::span<const Vector<D>> drag,
-                         std::span<const Vector<D>> place, double dt) {
+void account_shell_loads(const Scene<D>& scene, Ledger& ledger, std::span<const Vector<D>> outer, std::span<const Vector<D>> drag,
+                         std::span<const Vector<D>> from, std::span<const Vector<D>> to) {
   double work = 0;
   for (std::size_t s = 0; s < outer.size(); ++s) {
-    const std::size_t row = static_cast<std::size_t>(scene.elastic_count) + s;
-    const Vector<D> load = drag.empty() ? outer[s] : Vector<D>(outer[s] - drag[row]);
-    work += load.dot(place.empty() ? Vector<D>(dt * state.velocity[row]) : Vector<D>(place[s] - state.position[row]));
+    const Vector<D> load = drag.empty() ? outer[s] : Vector<D>(outer[s] - drag[static_cast<std::size_t>(scene.elastic_count) + s]);
+    work += load.dot(to[s] - from[s]);
   }
-  state.ledger.load_work += work;
+  ledger.load_work += work;
 }
 
 namespace {
 
 template <int D>
-double kinetic_energy(const Scene<D>& scene, const State<D>& state) {
-  const std::size_t solids = static_cast<std::size_t>(scene.elastic_count), first = static_cast<std::size_t>(scene.first_fluid);
-  return 0.5 * ordered_sum(state.size(), [&](std::size_t i) {
-           const double squared = state.velocity[i].squaredNorm();
-           if (i >= first) return state.kind[i] == Kind::fluid ? scene.density[state.body[i]] * scene.fluid_particle_volume * squared : 0.0;
-           if (state.kind[i] == Kind::elastic) return scene.solids->mass[i] * squared;
-           return state.kind[i] == Kind::shell ? scene.shells->mass[i - solids] * squared : 0.0;
+double fluid_kinetic_energy(const Scene<D>& scene, const State<D>& state) {
+  const std::size_t first = static_cast<std::size_t>(scene.first_fluid);
+  return 0.5 * scene.fluid_particle_volume * ordered_sum(state.size() - first, [&](std::size_t k) {
+           if (state.kind[first + k] != Kind::fluid) return 0.0;
+           return scene.density[state.body[first + k]] * state.velocity[first + k].squaredNorm();
          });
+}
+
+// A leaflet particle stands in the place of a whole lattice cell but is only as thick as its material; the blood that the cell holds beside
+// it has no particle of its own and moves along the leaflet's normal with it.
+template <int D>
+double solid_kinetic_energy(const Scene<D>& scene, const State<D>& state) {
+  const std::size_t solids = static_cast<std::size_t>(scene.elastic_count), shells = static_cast<std::size_t>(scene.shell_count);
+  double energy = 0, blood_density = 0;
+  for (std::size_t b = 0; b < solids; ++b) energy += 0.5 * scene.solids->mass[b] * state.velocity[b].squaredNorm();
+  if (!scene.shells) return energy;
+  for (const auto& body : scene.description.bodies)
+    if (body.kind == Kind::fluid) blood_density = std::max(blood_density, body.fluid.density);
+  std::vector<Vector<D>> normal(shells);
+  std::vector<double> area(shells);
+  shell_normals_and_areas<D>(*scene.shells, std::span(state.position).subspan(solids, shells), normal, area);
+  for (std::size_t s = 0; s < shells; ++s) {
+    const Vector<D>& velocity = state.velocity[solids + s];
+    const double thickness = scene.shells->bodies[scene.shells->body[s]].thickness, along = velocity.dot(normal[s]);
+    const double blood = blood_density * area[s] * std::max(scene.lattice.spacing - thickness, 0.0);
+    energy += 0.5 * (scene.shells->mass[s] * velocity.squaredNorm() + blood * along * along);
+  }
+  return energy;
 }
 
 template <int D>
@@ -90,7 +112,7 @@ double density_error(const Scene<D>& scene, const State<D>& state, Workspace<D>&
 template <int D>
 void measure_ledger(const Scene<D>& scene, State<D>& state, Workspace<D>& scratch) {
   Ledger& ledger = state.ledger;
-  ledger.kinetic_energy = kinetic_energy(scene, state);
+  ledger.kinetic_energy = fluid_kinetic_energy(scene, state) + solid_kinetic_energy(scene, state);
   ledger.elastic_energy = elastic_energy(scene, state, scratch);
   if (!scene.pressure) return;
   ledger.density_error = density_error(scene, state, scratch);
@@ -117,11 +139,11 @@ std::vector<std::string> over_limits(const Scene<D>& scene, const State<D>& stat
   return lines;
 }
 
-#define INSTANTIATE(D)                                                                                                  \
-  template void account_fluid(const Scene<D>&, State<D>&, const Workspace<D>&, double);                                 \
-  template void account_shell_loads(const Scene<D>&, State<D>&, std::span<const Vector<D>>, std::span<const Vector<D>>, \
-                                    std::span<const Vector<D>>, double);                                                \
-  template void measure_ledger(const Scene<D>&, State<D>&, Workspace<D>&);                                              \
+#define INSTANTIATE(D)                                                                                                \
+  template void account_fluid(const Scene<D>&, State<D>&, const Workspace<D>&, std::span<const Vector<D>>, double);   \
+  template void account_shell_loads(const Scene<D>&, Ledger&, std::span<const Vector<D>>, std::span<const Vector<D>>, \
+                                    std::span<const Vector<D>>, std::span<const Vector<D>>);                          \
+  template void measure_ledger(const Scene<D>&, State<D>&, Workspace<D>&);                                            \
   template std::vector<std::string> over_limits(const Scene<D>&, const State<D>&);
 INSTANTIATE(2)
 INSTANTIATE(3)

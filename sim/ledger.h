@@ -12,16 +12,17 @@
 namespace sim {
 
 // Adds what the step just taken in the fluid did, before rows are exchanged: viscous_loss += dt sum V mu (shear rate)^2 over fluid, and
-// load_work += dt sum m a . v with a of gravity and of the loads on fluid bodies. Solids' loads: predict_solids; shells':
-// account_shell_loads.
+// load_work += sum m a . (x - from) with a of gravity and of the loads on fluid bodies, and the whole way of the particle: who is lifted
+// by whatever means has taken that work. Solids' loads: predict_solids, and here gravity over what they moved since; shells':
+// account_shell_loads. `from`: all rows' places at the step's start, m.
 template <int D>
-void account_fluid(const Scene<D>& scene, State<D>& state, const Workspace<D>& work, double dt);
+void account_fluid(const Scene<D>& scene, State<D>& state, const Workspace<D>& work, std::span<const Vector<D>> from, double dt);
 
-// load_work += sum F . dx over shells, F of loads and gravity. `outer`: with the blood's drag, N; `drag`: that drag by row, or empty;
-// `place`: new positions, m, where state.position still has the old ones; or empty: dx = v dt.
+// load_work += sum F . (to - from) over shells, F of loads and gravity. `outer`: with the blood's drag, N; `drag`: that drag by row, or
+// empty; places in m, by shell row.
 template <int D>
-void account_shell_loads(const Scene<D>& scene, State<D>& state, std::span<const Vector<D>> outer, std::span<const Vector<D>> drag,
-                         std::span<const Vector<D>> place, double dt);
+void account_shell_loads(const Scene<D>& scene, Ledger& ledger, std::span<const Vector<D>> outer, std::span<const Vector<D>> drag,
+                         std::span<const Vector<D>> from, std::span<const Vector<D>> to);
 
 // What is measured once an output: kinetic_energy and elastic_energy now, density_error = rms of n/n0 - 1 over fluid with neither a free
 // surface nor an open end near, and particles_lost = |fluid at the start + in - out - fluid now|.

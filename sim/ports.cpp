@@ -194,6 +194,9 @@ void exchange_through_ports(const Scene<D>& scene, State<D>& state, double dt) {
   const std::size_t first = static_cast<std::size_t>(scene.first_fluid), before = state.size();
   const double l0 = scene.description.spacing;
   std::vector<std::uint8_t> keep(before - first, 1);
+  const auto carried = [&](std::size_t i) {  // kinetic energy of a particle, J
+    return 0.5 * scene.density[state.body[i]] * scene.fluid_particle_volume * state.velocity[i].squaredNorm();
+  };
   for (std::size_t p = 0; p < ports.size(); ++p) {
     const Port<D>& port = ports[p];
     const double area = opening_area(scene, state, static_cast<std::int32_t>(p));
@@ -228,6 +231,7 @@ void exchange_through_ports(const Scene<D>& scene, State<D>& state, double dt) {
         state.kind[i] = Kind::fluid;
         state.port[i] = -1;
         ++state.ledger.particles_in;
+        state.ledger.port_work += carried(i);
         const Vector<D> spot = state.position[i] + layers * l0 * port.normal;
         bool free = true;
         for (std::size_t j : sheet) free = free && (keep[j - first] == 0 || (state.position[j] - spot).squaredNorm() > 0.36 * l0 * l0);
@@ -241,6 +245,7 @@ void exchange_through_ports(const Scene<D>& scene, State<D>& state, double dt) {
       state.kind[i] = Kind::port;
       state.port[i] = static_cast<std::int32_t>(p);
       ++state.ledger.particles_out;
+      state.ledger.port_work -= carried(i);
     }
   }
   keep.resize(state.size() - first, 1);

@@ -1,5 +1,7 @@
 #include "sim/pressure.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "sim/leaflet_coupling.h"
@@ -135,7 +137,15 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
     if (at_surface)  // the surface, where p = 0, lies half a spacing ahead; at least the missing neighbours count
       diagonal += volume * k / rho * std::max(work.surface_outward[i].norm() / (0.5 * scene.lattice.spacing), n0 * std::max(1 - n, 0.0));
     const double support = scene.sheet ? work.support[i] : 1.0;
-    source += support * volume * (-work.velocity_gradient[i].trace() / dt - divergence + blend * compression);
+    double mending = blend * compression;
+    if (!scene.pressure->free_surface) {
+      // A stream piles up its density error while it passes a particle, l0/u: what is beyond the noise of a full but uneven arrangement is
+      // mended as fast. Beside a free surface neighbours are missing by right, and the error is not told from that.
+      constexpr double noise = 0.03;
+      const double error = std::copysign(std::max(std::abs(compression) - noise, 0.0), compression);
+      mending += state.velocity[i].norm() / (scene.lattice.spacing * dt) * error;
+    }
+    source += support * volume * (-work.velocity_gradient[i].trace() / dt - divergence + mending);
     a.diagonal[u] = diagonal > 0 ? diagonal : 1;
     work.source[u] = diagonal > 0 ? source : 0;
   }
@@ -208,6 +218,34 @@ SolveReport solve_pressure(const Scene<D>& scene, State<D>& state, Workspace<D>&
   return report;
 }
 
+namespace {
+
+// Whether particle i at the surface belongs to spray: a film or jet with less fluid in sight than a row of particles shows, or a drop of
+// fewer than ten. There the corrected difference form would rest on one or two neighbours and push them along with itself; the pair form
+// keeps momentum.
+template <int D>
+bool in_spray(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, std::int32_t i) {
+  constexpr double row = 0.28;  // of n0, in 2-D with a radius of 3.1 l0; the corner of a pool at a wall shows 0.39
+  constexpr std::size_t small = 10;
+  double visible = 0;
+  for (std::int64_t e = work.neighbors.start[i]; e < work.neighbors.start[i + 1]; ++e)
+    if (work.neighbors.index[e] >= scene.first_fluid) visible += work.link_weight[e];
+  if (visible < row * scene.lattice.number_density) return true;
+  std::vector<std::int32_t> drop{i};
+  for (std::size_t k = 0; k < drop.size(); ++k)
+    for (std::int64_t e = work.neighbors.start[drop[k]]; e < work.neighbors.start[drop[k] + 1]; ++e) {
+      const std::int32_t j = work.neighbors.index[e];
+      if (j < scene.first_fluid || work.link_weight[e] == 0) continue;
+      if (state.kind[j] == Kind::port) return false;
+      if (std::find(drop.begin(), drop.end(), j) != drop.end()) continue;
+      drop.push_back(j);
+      if (drop.size() >= small) return false;
+    }
+  return true;
+}
+
+}  // namespace
+
 template <int D>
 void pressure_gradients(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
   const Index n = static_cast<Index>(state.size());
@@ -218,7 +256,8 @@ void pressure_gradients(const Scene<D>& scene, const State<D>& state, Workspace<
   for (Index i = scene.first_fluid; i < n; ++i) {
     work.pressure_gradient[i].setZero();
     if (state.kind[i] != Kind::fluid) continue;
-    const bool inside = work.surface[i] != 1 || work.number_density[i] >= 0.6;
+    const bool inside =
+        work.surface[i] != 1 || (work.number_density[i] >= 0.6 && !in_spray(scene, state, work, static_cast<std::int32_t>(i)));
     const double p_i = state.pressure[i], rho = scene.density[state.body[i]];
     Padded<D> total = Padded<D>::Zero();
     for (std::int64_t e = work.neighbors.start[i]; e < work.neighbors.start[i + 1]; ++e) {

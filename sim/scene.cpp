@@ -129,7 +129,8 @@ Scene<D> make_scene(SceneDescription<D> description) {
     find_neighborhood(scene, state, work);
     const std::int64_t surface = count_open_surface(scene, state, work);
     const auto fluid_count = static_cast<double>(state.size() - static_cast<std::size_t>(scene.first_fluid));
-    scene.pressure->free_surface = surface > std::max(4.0, 0.002 * fluid_count);
+    // A few gaps in a full vessel are no surface, unless they are half of the fluid.
+    scene.pressure->free_surface = surface > std::min(std::max(4.0, 0.002 * fluid_count), 0.5 * fluid_count);
     for (const auto& port : d.ports)
       scene.pressure->anchored |= port.condition == PortCondition::pressure || port.condition == PortCondition::windkessel;
     scene.pressure->anchored |= scene.pressure->free_surface;

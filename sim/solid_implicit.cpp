@@ -118,6 +118,20 @@ class Stage {
   double s_, time_;
 };
 
+// The books of a step of size h from time t: work of loads and gravity, and what mass-proportional damping takes, by the trapezoidal rule.
+template <int D>
+void account_step(const SolidElasticity<D>& solid, const SolidStepInput<D>& input, SolidMotion<D>& motion, double t, double h,
+                  std::span<const Vector<D>> x0, std::span<const Vector<D>> v0, std::span<const Vector<D>> x1,
+                  std::span<const Vector<D>> v1, SolidStepReport& report) {
+  for (int end = 0; end < 2; ++end) {
+    motion.other.assign(solid.size(), Vector<D>::Zero());
+    external_loads<D>(solid, input.loads, input.gravity, t + end * h, end ? x1 : x0, motion.work, motion.other);
+    for (std::size_t i = 0; i < solid.size(); ++i) report.load_work += 0.5 * motion.other[i].dot(x1[i] - x0[i]);
+  }
+  for (std::size_t i = 0; i < solid.size(); ++i)
+    report.damping_loss += 0.5 * h * solid.damping[i] * solid.mass[i] * (v0[i].squaredNorm() + v1[i].squaredNorm());
+}
+
 // One TR-BDF2 step of size h from time t. False where a stage does not converge; position and velocity are then as before.
 template <int D>
 bool tr_bdf2(const SolidElasticity<D>& solid, const SolidStepInput<D>& input, SolidMotion<D>& motion, double t, double h,
@@ -162,6 +176,7 @@ bool tr_bdf2(const SolidElasticity<D>& solid, const SolidStepInput<D>& input, So
     for (int k = 0; k < D; ++k)
       if (solid.fixed[i] >> k & 1) velocity[i](k) = 0;
   ++report.substeps;
+  account_step<D>(solid, input, motion, t, h, x0, v0, position, velocity, report);
   return true;
 }
 

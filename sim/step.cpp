@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "sim/leaflet_coupling.h"
 #include "sim/ledger.h"
@@ -68,10 +69,11 @@ void check_step(const Scene<D>& scene, const State<D>& state, double dt) {
     throw NumericalFailure("a speed ran away: the step fell below a ten-thousandth of scheme.maximum_step");
   if (state.step > 20 && dt < state.last_step && dt < 1e-4 * state.time / static_cast<double>(state.step))
     throw NumericalFailure("a speed ran away: the step fell below a ten-thousandth of the mean step so far");
+  constexpr double farthest = 0.5;  // of l0: blood that moves farther in a step passes neighbours that it never met
   const auto sound = [&](Index i) {
     const double speed = state.velocity[i].norm();
     return std::isfinite(speed) && state.position[i].allFinite() && std::isfinite(state.pressure[i]) &&
-           (i < scene.first_fluid || speed * dt < l0);
+           (i < scene.first_fluid || speed * dt < farthest * l0);
   };
   const Index n = static_cast<Index>(state.size());
   Index i = n;  // the first that is not
@@ -108,7 +110,13 @@ void pressure_stage(const Scene<D>& scene, State<D>& state, Workspace<D>& work, 
 }
 
 template <int D>
-void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
+std::span<const Vector<D>> shell_rows(const Scene<D>& scene, std::span<const Vector<D>> all) {
+  return all.subspan(static_cast<std::size_t>(scene.elastic_count), static_cast<std::size_t>(scene.shell_count));
+}
+
+template <int D>
+void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, std::span<const Vector<D>> from, double dt,
+                StepReport& report) {
   std::vector<double>& clocks = work.stage_seconds;
   find_neighborhood(scene, state, work);
   timed(clocks, Stage::ports_and_walls, [&] {
@@ -149,8 +157,10 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
     separate_particles(scene, state, work);
   });
   if (scene.sheet) timed(clocks, Stage::sides, [&] { keep_sides(scene, state, work); });
-  account_fluid(scene, state, work, dt);
-  if (scene.shells) account_shell_loads<D>(scene, state, work.shell_outer_force, work.boundary_force, {}, dt);
+  account_fluid<D>(scene, state, work, from, dt);
+  if (scene.shells)
+    account_shell_loads<D>(scene, state.ledger, work.shell_outer_force, work.boundary_force, shell_rows<D>(scene, from),
+                           shell_rows<D>(scene, state.position));
   timed(clocks, Stage::exchange, [&] {
     exchange_through_ports(scene, state, dt);
     remove_escaped(scene, state);
@@ -174,7 +184,7 @@ void step_dry(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double
   report.elastic_substeps = shells.substeps;
   state.ledger.elastic_substeps += shells.substeps;
   state.ledger.limiter_hits += shells.limiter_hits;
-  account_shell_loads<D>(scene, state, work.shell_outer_force, {}, work.shell_position, dt);
+  account_shell_loads<D>(scene, state.ledger, work.shell_outer_force, {}, shell_rows<D>(scene, state.position), work.shell_position);
   std::copy(work.shell_position.begin(), work.shell_position.end(), state.position.begin() + scene.elastic_count);
   std::copy(work.shell_velocity.begin(), work.shell_velocity.end(), state.velocity.begin() + scene.elastic_count);
 }
@@ -231,7 +241,7 @@ StepReport step(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
       move_walls(scene, state, dt);
       if (scene.contact && !work.contact) work.contact = scene.contact;
       if (scene.pressure)
-        step_fluid(scene, state, work, dt, report);
+        step_fluid<D>(scene, state, work, before.position, dt, report);
       else
         step_dry(scene, state, work, dt, report);
       check_step(scene, state, dt);
