@@ -138,9 +138,9 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
       diagonal += volume * k / rho * std::max(work.surface_outward[i].norm() / (0.5 * scene.lattice.spacing), n0 * std::max(1 - n, 0.0));
     const double support = scene.sheet ? work.support[i] : 1.0;
     double mending = blend * compression;
-    if (!scene.pressure->free_surface) {
-      // A stream piles up its density error while it passes a particle, l0/u: what is beyond the noise of a full but uneven arrangement is
-      // mended as fast. Beside a free surface neighbours are missing by right, and the error is not told from that.
+    if (scene.sheet && !scene.pressure->free_surface) {
+      // Past a leaflet's edge a jet piles up its density error while it passes a particle, l0/u: what is beyond the noise of a full but
+      // uneven arrangement is mended as fast. Beside a free surface neighbours are missing by right, and the error is not told from that.
       constexpr double noise = 0.03;
       const double error = std::copysign(std::max(std::abs(compression) - noise, 0.0), compression);
       mending += state.velocity[i].norm() / (scene.lattice.spacing * dt) * error;
