@@ -80,7 +80,7 @@ void read_limits(const TableReader& top, SceneFile& scene) {
   scene.limits.memory = reader.integer("memory", not_negative, 0);
   scene.limits.wall_time = reader.number("wall_time", not_negative, 0);
   scene.limits.lost = reader.integer("lost", not_negative, scene.limits.lost);
-  scene.limits.penetration = reader.number("penetration", not_negative, 0.5);
+  scene.limits.penetration = reader.number("penetration", not_negative, 1);
   scene.limits.density_error = reader.number("density_error", not_negative, scene.limits.density_error);
 }
 
