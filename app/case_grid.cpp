@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -9,7 +10,9 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "app/progress.h"
@@ -46,7 +49,24 @@ pid_t start(const std::vector<std::string>& words, const std::filesystem::path& 
   _exit(127);
 }
 
+// Adds what a child used to what its case had used before. The peak counts at least what this program held when it started the child.
+void add_case_cost(const GridCase& one, double elapsed, const rusage& used) {
+  CaseCost cost = read_case_cost(one);
+  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  cost.elapsed += elapsed, cost.processor += seconds(used.ru_utime) + seconds(used.ru_stime);
+  cost.peak_memory = std::max(cost.peak_memory, 1024.0 * static_cast<double>(used.ru_maxrss));
+  std::ofstream(one.folder / "cost.json")
+      << nlohmann::json{{"elapsed", cost.elapsed}, {"processor", cost.processor}, {"peak_memory", cost.peak_memory}}.dump() << "\n";
+}
+
 }  // namespace
+
+CaseCost read_case_cost(const GridCase& one) {
+  std::ifstream file(one.folder / "cost.json");
+  const nlohmann::json json = file ? nlohmann::json::parse(file, nullptr, false) : nlohmann::json();
+  if (!json.is_object()) return {};
+  return {json.value("elapsed", 0.0), json.value("processor", 0.0), json.value("peak_memory", 0.0)};
+}
 
 Variation parse_variation(const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -96,7 +116,7 @@ int threads_of_case(const GridOptions& options) {
 
 std::vector<std::string> case_command(const GridCase& one, const GridOptions& options, const std::string& program) {
   std::vector<std::string> words{program, "run", options.scene.string(), "-o", one.run().string(), "--continue", "--quiet"};
-  words.insert(words.end(), {"--threads", std::to_string(threads_of_case(options))});
+  words.insert(words.end(), {"--threads", std::to_string(one.threads > 0 ? one.threads : threads_of_case(options))});
   for (const auto* settings : {&options.settings, &one.settings})
     for (const std::string& setting : *settings) words.insert(words.end(), {"--set", setting});
   return words;
@@ -107,7 +127,7 @@ std::vector<int> run_grid(const std::vector<GridCase>& cases, const GridOptions&
   const std::atomic<bool>& stop = stop_on_signal();
   const double started = now_seconds();
   std::vector<int> codes(cases.size(), -1);
-  std::map<pid_t, std::size_t> running;
+  std::map<pid_t, std::pair<std::size_t, double>> running;  // case, when it was started
   std::size_t next = 0, done = 0;
   bool told = false;
   const auto over = [&] { return stop.load() || (options.budget_seconds > 0 && now_seconds() - started > options.budget_seconds); };
@@ -121,27 +141,30 @@ std::vector<int> run_grid(const std::vector<GridCase>& cases, const GridOptions&
       std::filesystem::create_directories(cases[index].folder);
       const pid_t child = start(case_command(cases[index], options, program), cases[index].folder);
       if (child < 0) throw std::runtime_error("can't start " + program);
-      running[child] = index;
+      running[child] = {index, now_seconds()};
     }
     if (running.empty()) continue;
     if (stop.load() && !told) {  // a signal to this process alone: the children keep what they have and end too
-      for (const auto& [child, index] : running) kill(child, SIGTERM);
+      for (const auto& [child, begun] : running) kill(child, SIGTERM);
       told = true;
     }
     int status = 0;
-    const pid_t ended = waitpid(-1, &status, WNOHANG);
+    rusage used{};
+    const pid_t ended = wait4(-1, &status, WNOHANG, &used);
     const auto found = running.find(ended);
     if (found == running.end()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       continue;
     }
-    codes[found->second] = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+    const auto [index, since] = found->second;
+    codes[index] = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+    add_case_cost(cases[index], now_seconds() - since, used);
     ++done;
     if (!options.quiet)
-      std::fprintf(stderr, "%zu of %zu: %s %s, %s so far\n", done, cases.size(), cases[found->second].folder.filename().string().c_str(),
-                   codes[found->second] == 0 ? "finished"
-                   : told                    ? "stopped"
-                                             : "failed",
+      std::fprintf(stderr, "%zu of %zu: %s %s, %s so far\n", done, cases.size(), cases[index].folder.filename().string().c_str(),
+                   codes[index] == 0 ? "finished"
+                   : told            ? "stopped"
+                                     : "failed",
                    duration_text(now_seconds() - started).c_str());
     running.erase(found);
   }

@@ -17,6 +17,7 @@ Variation parse_variation(const std::string& text);
 struct GridCase {
   std::filesystem::path folder;       // of its own
   std::vector<std::string> settings;  // "KEY=VALUE", one a variation
+  int threads = 0;                    // of this case; 0 = as the options say
   std::filesystem::path run() const { return folder / "run.h5"; }
 };
 // Every combination, the last variation changing fastest.
@@ -34,6 +35,13 @@ int threads_of_case(const GridOptions& options);
 // Exit code a case (0 also for cases that were finished before); -1 = not started (budget, Ctrl-C). A signal that stops this process stops
 // the running cases too: they keep what they have, and the next call goes on with them.
 std::vector<int> run_grid(const std::vector<GridCase>& cases, const GridOptions& options);
+
+// What a case cost all in all, its earlier parts included; zeros where the case was not run by run_grid. Kept in cost.json in its folder.
+struct CaseCost {
+  double elapsed = 0, processor = 0;  // s; processor: all threads
+  double peak_memory = 0;             // bytes
+};
+CaseCost read_case_cost(const GridCase& one);
 
 // The command line of one case, for job scripts.
 std::vector<std::string> case_command(const GridCase& one, const GridOptions& options, const std::string& program);

@@ -1,168 +1,113 @@
-// cusp accuracy SCENE [--vary …] [--budget 20min] [-o DIR]: what accuracy costs in time.
+// cusp accuracy SCENE [--vary …] [--knobs …] [--budget 20min] [--store] [-o DIR]: what accuracy costs in time; --builtin: the five cases of
+// docs/accuracy.md.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <memory>
-#include <sstream>
 
-#include "app/case_grid.h"
+#include "app/accuracy.h"
+#include "app/assets.h"
 #include "app/commands.h"
-#include "app/compare.h"
+#include "app/run_budget.h"
+#include "app/scene_table.h"
 
 namespace app {
 namespace {
 
 struct Options {
-  std::string scene, output, budget;
+  std::string scene, output, budget, clock = "wall", knobs, docs;
   std::vector<std::string> vary, settings;
-  int jobs = 1, threads = 0;
-  bool quiet = false, json = false;
+  int jobs = 1, threads = 1, repeats = 3, seeds = 0;
+  bool quiet = false, json = false, store = false, builtin = false;
 };
 
-double read_budget(const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  const std::string unit(end);
-  const double factor = unit == "s" || unit.empty() ? 1 : unit == "min" ? 60 : unit == "h" ? 3600 : -1;
-  if (end == text.c_str() || value <= 0 || factor < 0) throw SceneError("--budget " + text + ": is no time; give 90s, 20min or 2h");
-  return value * factor;
-}
-
-struct Rung {
-  GridCase grid_case;
-  double spacing = 0, wall_seconds = 0, steps = 0, pressure_iterations = 0, particles = 0;
-  std::vector<Comparison> errors;
-};
-
-// Without [reference]: every probe's last value beside that of the last (finest) run.
-std::vector<Comparison> against_finest(const sim::RunReader& run, const sim::RunReader& finest) {
-  std::vector<Comparison> result;
-  for (const std::string& name : run.header().columns) {
-    if (name == "time") continue;
-    if (name == "maximum_speed") break;  // the probes stand before the metrics
-    Comparison one;
-    one.quantity = name, one.source = "finest run";
-    const std::vector<double> a = run.column(name), b = finest.column(name);
-    if (a.empty() || b.empty()) continue;
-    one.measured = a.back(), one.reference = b.back();
-    one.error = std::abs(one.measured - one.reference) / (one.reference != 0 ? std::abs(one.reference) : 1);
-    result.push_back(one);
-  }
-  return result;
-}
-
-// Slope of log error over log spacing where the errors fall monotonously, else nothing.
-std::optional<double> observed_order(const std::vector<Rung>& rungs, std::size_t quantity) {
-  std::vector<std::pair<double, double>> points;
-  for (const Rung& rung : rungs)
-    if (quantity < rung.errors.size() && rung.errors[quantity].error > 0)
-      points.emplace_back(std::log(rung.spacing), std::log(rung.errors[quantity].error));
-  std::sort(points.begin(), points.end());
-  if (points.size() < 2 || points.front().first == points.back().first) return std::nullopt;
-  double x = 0, y = 0, xx = 0, xy = 0;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    if (k > 0 && points[k].second < points[k - 1].second) return std::nullopt;
-    x += points[k].first, y += points[k].second, xx += points[k].first * points[k].first, xy += points[k].first * points[k].second;
-  }
-  const double n = static_cast<double>(points.size());
-  return (n * xy - x * y) / (n * xx - x * x);
-}
-
-std::string number(double value) {
-  std::ostringstream text;
-  text.precision(4);
-  text << value;
-  return text.str();
-}
-
-nlohmann::json results_json(const std::vector<Rung>& rungs) {
-  nlohmann::json json;
-  for (const Rung& rung : rungs) {
-    nlohmann::json one{{"settings", rung.grid_case.settings},
-                       {"spacing", rung.spacing},
-                       {"wall_seconds", rung.wall_seconds},
-                       {"steps", rung.steps},
-                       {"particle_steps", rung.steps * rung.particles},
-                       {"pressure_iterations", rung.pressure_iterations}};
-    for (const Comparison& c : rung.errors) one["errors"].push_back(comparison_json(c));
-    json["runs"].push_back(one);
-  }
-  if (!rungs.empty())
-    for (std::size_t q = 0; q < rungs.front().errors.size(); ++q) {
-      const auto order = observed_order(rungs, q);
-      json["order"][rungs.front().errors[q].quantity] = order ? nlohmann::json(*order) : nlohmann::json("no order");
+std::vector<std::string> words_of(const std::string& list) {
+  std::vector<std::string> words;
+  std::string word;
+  for (char c : list + ",")
+    if (c == ',') {
+      if (!word.empty()) words.push_back(word);
+      word.clear();
+    } else {
+      word += c;
     }
-  return json;
+  return words;
 }
 
-void write_tables(const std::vector<Rung>& rungs, const nlohmann::json& json, const std::filesystem::path& folder,
-                  const std::string& title) {
-  std::ofstream csv(folder / "accuracy.csv"), md(folder / "accuracy.md");
-  csv << "settings,spacing,wall_seconds,steps,particle_steps,pressure_iterations,quantity,time,measured,reference,error,uncertainty\n";
-  md << "# What accuracy costs: " << title
-     << "\n\n| settings | time, s | particle-steps | quantity | measured | reference | error |\n|---|---|---|---|---|---|---|\n";
-  for (const Rung& rung : rungs) {
-    std::string settings;
-    for (const std::string& setting : rung.grid_case.settings) settings += (settings.empty() ? "" : " ") + setting;
-    for (const Comparison& c : rung.errors) {
-      csv << "\"" << settings << "\"," << rung.spacing << "," << rung.wall_seconds << "," << rung.steps << ","
-          << rung.steps * rung.particles << "," << rung.pressure_iterations << "," << c.quantity << "," << c.time << "," << c.measured
-          << "," << c.reference << "," << c.error << "," << c.uncertainty << "\n";
-      md << "| " << settings << " | " << number(rung.wall_seconds) << " | " << number(rung.steps * rung.particles) << " | " << c.quantity
-         << " | " << number(c.measured) << " | " << number(c.reference) << " | " << number(100 * c.error) << " % |\n";
-    }
-  }
-  md << "\nObserved order of the error in the spacing:";
-  if (json.contains("order"))
-    for (const auto& [quantity, order] : json["order"].items())
-      md << " " << quantity << " " << (order.is_string() ? order.get<std::string>() : number(order.get<double>())) << ";";
-  md << "\n";
-  std::ofstream(folder / "accuracy.json") << json.dump(2) << "\n";
+AccuracyOptions chosen_options(const Options& options) {
+  AccuracyOptions chosen;
+  chosen.scene = options.scene, chosen.settings = options.settings, chosen.vary = options.vary, chosen.knobs = words_of(options.knobs);
+  const std::filesystem::path path(options.scene);
+  chosen.folder =
+      options.output.empty() ? path.parent_path() / ("accuracy-" + path.stem().string()) : std::filesystem::path(options.output);
+  chosen.jobs = options.jobs, chosen.threads = options.threads, chosen.repeats = options.repeats, chosen.seeds = options.seeds;
+  chosen.budget = options.budget.empty() ? 0 : read_duration("--budget", options.budget);
+  chosen.clock = options.clock == "processor" ? CostClock::processor : CostClock::wall, chosen.quiet = options.quiet || options.json;
+  return chosen;
+}
+
+void store(const AccuracyStudy& study, const SceneFile& scene) {
+  const std::filesystem::path file = stored_study_path(scene);
+  std::ofstream stream(file);
+  stream << study_json(study).dump(1) << "\n";
+  if (!stream.flush()) throw std::runtime_error(file.string() + ": can't be written; set CUSP_ASSETS to an assets folder of your own");
 }
 
 int measure(const Options& options) {
-  const SceneFile scene = read_scene_file(options.scene, options.settings);
-  if (scene.probes.empty())
-    throw SceneError(options.scene + ": has no [[probe]], so there is nothing to compare; add one, and a [reference]");
-  std::vector<Variation> variations;
-  for (const std::string& text : options.vary) variations.push_back(parse_variation(text));
-  if (variations.empty())
-    variations.push_back({"spacing", {number(2 * scene.spacing), number(std::sqrt(2.0) * scene.spacing), number(scene.spacing)}});
-  const std::filesystem::path path(options.scene);
-  const std::filesystem::path folder =
-      options.output.empty() ? path.parent_path() / ("accuracy-" + path.stem().string()) : std::filesystem::path(options.output);
-  std::filesystem::create_directories(folder);
-  const std::vector<GridCase> cases = grid_cases(variations, folder / "runs");
-  GridOptions grid{
-      path, options.settings, options.jobs, options.threads, options.quiet, options.budget.empty() ? 0 : read_budget(options.budget)};
-  const std::vector<int> codes = run_grid(cases, grid);
-  std::vector<Rung> rungs;
-  for (std::size_t k = 0; k < cases.size(); ++k) {
-    if (codes[k] != 0) continue;
-    const sim::RunReader run(cases[k].run());
-    Rung rung{cases[k], run.header().spacing, run.wall_seconds(), static_cast<double>(run.steps()), 0, 0, {}};
-    const std::vector<double> particles = run.column("particles"), iterations = run.column("pressure_iterations");
-    if (!particles.empty()) rung.particles = particles.back();
-    if (!iterations.empty()) rung.pressure_iterations = iterations.back();
-    if (!scene.references.empty()) rung.errors = compare_with_references(scene, run);
-    rungs.push_back(std::move(rung));
-  }
-  if (rungs.empty()) throw std::runtime_error("no run finished; see log.txt in " + (folder / "runs").string());
-  if (scene.references.empty()) {
-    const auto finest = std::min_element(rungs.begin(), rungs.end(), [](const Rung& a, const Rung& b) { return a.spacing < b.spacing; });
-    const sim::RunReader best(finest->grid_case.run());
-    const std::filesystem::path best_path = finest->grid_case.folder;
-    for (Rung& rung : rungs)
-      if (rung.grid_case.folder != best_path) rung.errors = against_finest(sim::RunReader(rung.grid_case.run()), best);
-  }
-  const nlohmann::json json = results_json(rungs);
-  write_tables(rungs, json, folder, scene.title);
+  const AccuracyOptions chosen = chosen_options(options);
+  const AccuracyStudy study = measure_accuracy(chosen);
+  write_study(study, chosen.folder);
+  if (options.store) store(study, read_scene_file(chosen.scene, chosen.settings));
   if (options.json)
-    std::printf("%s\n", json.dump(2).c_str());
+    std::printf("%s\n", study_json(study).dump(2).c_str());
   else
-    std::printf("%s: %zu runs\n", (folder / "accuracy.md").string().c_str(), rungs.size());
-  return std::all_of(codes.begin(), codes.end(), [](int code) { return code == 0; }) || !options.budget.empty() ? 0 : 1;
+    std::printf("%s\n%s\n", study_text(study, "").c_str(), (chosen.folder / "accuracy.md").string().c_str());
+  const bool failed = std::any_of(study.left_out.begin(), study.left_out.end(),
+                                  [](const std::string& line) { return line.find(": failed: ") != std::string::npos; });
+  // A knob may be one that the scene can't be run with; that a rung of the ladder failed is another matter.
+  return failed && ladder_of(study).size() < 2 ? 1 : 0;
+}
+
+// The cases of assets/scenes/accuracy/cases.toml, one after the other, and the page made of them.
+int measure_builtin(const Options& options) {
+  const std::filesystem::path file = asset("scenes/accuracy/cases.toml"),
+                              folder = options.output.empty() ? std::filesystem::path("accuracy") : std::filesystem::path(options.output);
+  const toml::table table = toml::parse_file(file.string());
+  const TableReader top(table, "", {"case"});
+  std::string page =
+      "# What accuracy costs\n\nMade by `cusp accuracy --builtin --docs docs`: five cases, each run over a ladder of spacings, jittered "
+      "starts and its other "
+      "knobs, against its reference or its own finest run. A ringed point lies on the front: nothing measured is cheaper and better. The "
+      "squares are the scenes' own settings. Times are of the machine that made the page; `cusp accuracy SCENE` measures yours.\n\n";
+  for (const toml::table* entry : top.tables("case")) {
+    const TableReader reader(*entry, "case", {"name", "scene", "set", "vary", "knobs", "seeds", "repeats"});
+    const std::string name = reader.text("name");
+    Options one = options;
+    one.scene = std::filesystem::weakly_canonical(file.parent_path() / reader.text("scene")).string();
+    one.output = (folder / name).string();
+    if (reader.has("set")) one.settings = reader.texts("set");
+    if (reader.has("vary")) one.vary = reader.texts("vary");
+    one.knobs = reader.text("knobs", "");
+    one.seeds = static_cast<int>(reader.integer("seeds", {0, 100, false, false, "0 to 100"}, options.seeds));
+    one.repeats = static_cast<int>(reader.integer("repeats", {1, 100, false, false, "1 to 100"}, options.repeats));
+    const AccuracyOptions chosen = chosen_options(one);
+    const AccuracyStudy study = measure_accuracy(chosen);
+    write_study(study, chosen.folder);
+    if (options.store) store(study, read_scene_file(chosen.scene, chosen.settings));
+    page += study_text(study, "accuracy/" + name + ".png", 2);
+    if (!options.docs.empty()) {
+      const std::filesystem::path docs(options.docs);
+      std::filesystem::create_directories(docs / "accuracy");
+      std::filesystem::copy_file(chosen.folder / "accuracy.png", docs / "accuracy" / (name + ".png"),
+                                 std::filesystem::copy_options::overwrite_existing);
+    }
+    std::printf("%s: %s\n", name.c_str(), (chosen.folder / "accuracy.md").string().c_str());
+    std::fflush(stdout);
+  }
+  while (page.size() > 1 && page[page.size() - 2] == '\n') page.pop_back();
+  std::ofstream(folder / "accuracy.md") << page;
+  if (!options.docs.empty()) std::ofstream(std::filesystem::path(options.docs) / "accuracy.md") << page;
+  return 0;
 }
 
 }  // namespace
@@ -170,18 +115,31 @@ int measure(const Options& options) {
 void add_accuracy_command(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("accuracy", "what accuracy costs in time: a ladder of runs against [reference] or the finest");
-  command->footer("Example: cusp accuracy scene.toml --vary spacing=0.02,0.014,0.01 --budget 20min");
-  command->add_option("SCENE", options->scene, "scene file (.toml) with probes")->required();
-  command->add_option("--vary", options->vary, "KEY=V1,V2,... (default: spacing at 2, 1.41 and 1 times the scene's)")
+  command->footer(
+      "Example: cusp accuracy scene.toml --budget 20min\n         cusp accuracy scene.toml --vary spacing=0.02,0.014,0.01 --knobs none");
+  CLI::Option* scene = command->add_option("SCENE", options->scene, "scene file (.toml) with probes, or a valve");
+  command->add_option("--vary", options->vary, "KEY=V1,V2,...: spacing alone is the ladder; anything else, the grid that is run instead")
       ->allow_extra_args(false);
+  command->add_option("--knobs", options->knobs, "names with commas, or none (default: all that the scene has)");
   command->add_option("--set", options->settings, "KEY=VALUE for all runs; may be repeated")->allow_extra_args(false);
-  command->add_option("--budget", options->budget, "no run is started after this time: 90s, 20min, 2h");
+  command->add_option("--budget", options->budget,
+                      "wall time for all of it: the ladder that fits is run, then what else fits; 90s, 20min, 2h");
+  command->add_option("--repeats", options->repeats, "of each spacing, for the time's range")->check(CLI::Range(1, 100));
+  command->add_option("--seeds", options->seeds, "jittered starts")->check(CLI::Range(0, 100));
+  command->add_option("--clock", options->clock, "what cost means: wall, or processor (all threads; for a busy machine)")
+      ->check(CLI::IsMember({"wall", "processor"}));
   command->add_option("-o,--output", options->output, "folder (default: accuracy-SCENE beside the scene)");
-  command->add_option("--jobs", options->jobs, "runs at a time")->check(CLI::Range(1, 4096));
+  command->add_option("--jobs", options->jobs, "runs at a time; more than one spoils wall times")->check(CLI::Range(1, 4096));
   command->add_option("--threads", options->threads, "threads of each run")->check(CLI::Range(1, 4096));
+  command->add_flag("--store", options->store, "keep the result with the program, for --time-budget and --error-target of `cusp run`");
+  CLI::Option* builtin = command->add_flag("--builtin", options->builtin, "the built-in cases instead of a scene");
+  command->add_option("--docs", options->docs, "with --builtin: write accuracy.md and its pictures into this folder");
   command->add_flag("--quiet", options->quiet, "no progress");
   command->add_flag("--json", options->json, "print the result as JSON");
-  command->callback([options, &exit_code] { exit_code = measure(*options); });
+  command->callback([=, &exit_code] {
+    if (scene->count() == 0 && builtin->count() == 0) throw SceneError("cusp accuracy: no scene; give a scene file, or --builtin");
+    exit_code = options->builtin ? measure_builtin(*options) : measure(*options);
+  });
 }
 
 }  // namespace app

@@ -4,6 +4,7 @@
 #include <exception>
 #include <string>
 
+#include "app/command_bench.h"
 #include "app/command_render.h"
 #include "app/limits.h"
 #include "app/scene_error.h"
@@ -25,6 +26,7 @@ int run_program(int argc, char** argv) {
   add_view_command(program, exit_code);
   add_sweep_command(program, exit_code);
   add_accuracy_command(program, exit_code);
+  add_bench_command(program, exit_code);
   add_validate_command(program, exit_code);
   add_export_command(program, exit_code);
   add_report_command(program, exit_code);

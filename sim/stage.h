@@ -28,13 +28,27 @@ constexpr std::array<const char*, static_cast<std::size_t>(Stage::count)> stage_
     "pressure assembly",   "leaflet coupling",         "multigrid set-up",   "pressure solve", "pressure gradient",
     "motion and shifting", "sides of leaflets, walls", "exchange at ports"};
 
+// One stage of one step, for a trace. Seconds on the steady clock.
+struct StageEvent {
+  Stage stage;
+  double start, duration;
+};
+// Where the clocks also note every interval while there is room in its capacity; null: nowhere. Set by the program's --profile, before a
+// run.
+inline std::vector<StageEvent>* stage_trace = nullptr;
+
 // Adds the wall time between its making and its end to the stage's seconds.
 class StageClock {
  public:
   StageClock(std::vector<double>& seconds, Stage stage) : seconds_(seconds), stage_(static_cast<std::size_t>(stage)) {
     seconds_.resize(stage_names.size(), 0);
   }
-  ~StageClock() { seconds_[stage_] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  ~StageClock() {
+    const double duration = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    seconds_[stage_] += duration;
+    if (stage_trace && stage_trace->size() < stage_trace->capacity())
+      stage_trace->push_back({static_cast<Stage>(stage_), std::chrono::duration<double>(start_.time_since_epoch()).count(), duration});
+  }
   StageClock(const StageClock&) = delete;
   StageClock& operator=(const StageClock&) = delete;
 
