@@ -74,13 +74,14 @@ void read_domain(const TableReader& top, SceneFile& scene) {
 }
 
 void read_limits(const TableReader& top, SceneFile& scene) {
+  scene.limits.penetration = 1;  // l0; of a scene file stricter than of the library
   if (!top.has("limits")) return;
   const TableReader reader(top.table("limits"), "limits", {"particles", "memory", "wall_time", "lost", "penetration", "density_error"});
   scene.limits.particles = reader.integer("particles", {1, 1e12, false, false, "a whole number from 1"}, scene.limits.particles);
   scene.limits.memory = reader.integer("memory", not_negative, 0);
   scene.limits.wall_time = reader.number("wall_time", not_negative, 0);
   scene.limits.lost = reader.integer("lost", not_negative, scene.limits.lost);
-  scene.limits.penetration = reader.number("penetration", not_negative, 1);
+  scene.limits.penetration = reader.number("penetration", not_negative, scene.limits.penetration);
   scene.limits.density_error = reader.number("density_error", not_negative, scene.limits.density_error);
 }
 
