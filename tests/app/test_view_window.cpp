@@ -52,8 +52,8 @@ long colored(const render::Image& image, int left, int right) {
 
 TEST_F(ViewWindow, opens_plays_turns_and_closes) {
   ASSERT_EQ(
-      run("time 0\nwait 0.3\nscreenshot closed.png\ntime 0.4\nwait 0.2\nscreenshot open.png\norbit 60 20\nwait 0.2\nscreenshot turned.png\n"
-          "view pair\nwait 0.2\nscreenshot pair.png\nplay\nwait 1\npause\nprint\nclose\n"),
+      run("time 0\nwait 1.5\nscreenshot closed.png\ntime 0.4\nwait 1.5\nscreenshot open.png\norbit 60 20\nwait 1.5\nscreenshot turned.png\n"
+          "view pair\nwait 1.5\nscreenshot pair.png\nplay\nwait 1\npause\nprint\nclose\n"),
       0)
       << text("err.txt");
   const render::Image closed = render::read_png((folder_ / "closed.png").string()),
@@ -71,7 +71,7 @@ TEST_F(ViewWindow, opens_plays_turns_and_closes) {
 
 // The picture in the window and the one drawn without a display are the same code: they agree but for the driver's rounding.
 TEST_F(ViewWindow, shows_what_is_drawn_without_a_display) {
-  ASSERT_EQ(run("time 0.4\nwait 0.3\nscreenshot window.png\nclose\n"), 0) << text("err.txt");
+  ASSERT_EQ(run("time 0.4\nwait 4\nscreenshot window.png\nclose\n"), 0) << text("err.txt");
   const render::Image window = render::read_png((folder_ / "window.png").string());
   const int left = 300, width = 1000, height = 750;  // as draw_panels lays them out
   ViewModel model;
