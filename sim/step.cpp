@@ -118,6 +118,7 @@ template <int D>
 void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, std::span<const Vector<D>> from, double dt,
                 StepReport& report) {
   std::vector<double>& clocks = work.stage_seconds;
+  report.elastic_substeps = 0;  // a refused step's do not count
   find_neighborhood(scene, state, work);
   timed(clocks, Stage::ports_and_walls, [&] {
     prescribe_ports<D>(scene, state, &work, state.time + dt);
@@ -136,7 +137,7 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, std:
   if (scene.shells) {
     timed(clocks, Stage::elastic, [&] {
       const ShellSubstepReport shells = predict_leaflets(scene, state, work, dt);
-      report.elastic_substeps = shells.substeps;
+      report.elastic_substeps += shells.substeps;
       state.ledger.limiter_hits += shells.limiter_hits;
     });
     const StageClock clock(clocks, Stage::leaflet_coupling);
