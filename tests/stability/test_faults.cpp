@@ -128,11 +128,11 @@ TEST_F(Faults, MemoryLimitOfTheSystemIsSaidInOneLine) {
 
 TEST_F(Faults, TwoRunsOnOneFileLeaveTheFirstAlone) {
   const std::string slow = write_scene(folder_, valve_scene).string();
-  const pid_t first = start_cusp({"run", slow, "-o", path("run.h5"), "--quiet", "--threads", "1"}, path("first.log"));
+  const pid_t first = start_cusp({"run", slow, "-o", path("run.h5"), "--quiet", "--threads", "1", "--set", "time.end=10"}, path("first.log"));
   for (int k = 0; k < 2000 && !fs::exists(path("run.h5.journal")); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   for (const bool resume : {false, true}) {
-    std::vector<std::string> second{"run", slow, "-o", path("run.h5"), "--quiet"};
+    std::vector<std::string> second{"run", slow, "-o", path("run.h5"), "--quiet", "--set", "time.end=10"};
     if (resume) second.push_back("--continue");
     const ChildResult result = run_cusp(second, path("log"));
     EXPECT_EQ(result.exit_code, 1);
