@@ -119,13 +119,8 @@ int run_scene(const RunOptions& options) {
       if (!options.quiet) std::fprintf(stderr, "%s\n", choice->words.c_str());
     }
   }
-  std::vector<sim::StageEvent> events;
-  if (options.profile) {
-    events.reserve(100'000);  // the first some ten thousand steps
-    sim::stage_trace = &events;
-  }
+  if (options.profile) chosen.trace_events = 100'000;  // the first some ten thousand steps
   const sim::RunResult result = run_case(scene, chosen);
-  sim::stage_trace = nullptr;
   if (choice) {
     const nlohmann::json outcome = budget_outcome(*choice, result, scene, chosen.output);
     nlohmann::json printed = run_result_json(result, chosen.output);
@@ -139,7 +134,7 @@ int run_scene(const RunOptions& options) {
   if (options.profile) {
     print_profile(result);
     const std::filesystem::path trace = std::filesystem::path(chosen.output).replace_extension(".trace.json");
-    write_stage_trace(events, trace);
+    write_stage_trace(result.stage_times.trace, trace);
     std::fprintf(stderr, "%s: opens in Perfetto (ui.perfetto.dev) or chrome://tracing\n", trace.string().c_str());
   }
   return exit_code_of(result);

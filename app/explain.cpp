@@ -98,7 +98,7 @@ nlohmann::json explain_scene(const SceneFile& file, int measured_steps) {
                             {"seconds_a_step", a_step},
                             {"step", state.last_step},
                             {"microseconds_a_particle_and_step", 1e6 * a_step / static_cast<double>(state.size())}};
-      if (!work.stage_seconds.empty()) result["measured"]["stage_seconds"] = work.stage_seconds;
+      if (!work.stage_times.seconds.empty()) result["measured"]["stage_seconds"] = work.stage_times.seconds;
       result["estimated_seconds"] = a_step * file.time.end / state.last_step;
     } else {
       result["estimated_seconds"] = 4e-6 * static_cast<double>(state.size()) * file.time.end / first;

@@ -60,7 +60,7 @@ json timed_steps(const sim::Scene<D>& scene, const SpeedOptions& options) {
   double processor = 0, simulated = 0;
   std::int64_t iterations = 0;
   if (options.until == 0) sim::step(scene, state, work, end);  // makes the arrays
-  work.stage_seconds.clear();
+  work.stage_times.seconds.clear();
   const double first_time = state.time;
   const std::int64_t first_iterations = state.ledger.pressure_iterations;
   double next_look = first_time;
@@ -91,8 +91,8 @@ json timed_steps(const sim::Scene<D>& scene, const SpeedOptions& options) {
               {"peak_memory", peak_memory()}};
   if (density.count > 0)
     result["density_error_mean"] = density.mean / density.count, result["density_error_rms"] = std::sqrt(density.square / density.count);
-  for (std::size_t k = 0; k < work.stage_seconds.size(); ++k)
-    if (work.stage_seconds[k] > 0) result["stage_seconds"][sim::stage_names[k]] = work.stage_seconds[k];
+  for (std::size_t k = 0; k < work.stage_times.seconds.size(); ++k)
+    if (work.stage_times.seconds[k] > 0) result["stage_seconds"][sim::stage_names[k]] = work.stage_times.seconds[k];
   return result;
 }
 

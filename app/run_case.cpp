@@ -35,6 +35,7 @@ sim::RunResult run_case(const SceneFile& scene_file, const RunCaseOptions& optio
   with_scene(scene_file, options, [&](auto& built, const auto& scene) {
     sim::RunSetup setup;
     setup.file = options.output, setup.resume = options.resume, setup.checkpoint_seconds = options.checkpoint_seconds;
+    setup.trace_events = options.trace_events;
     setup.header.program_version = CUSP_VERSION;
     setup.header.scene_text = scene_file.text, setup.header.settings = scene_file.settings;
     setup.header.scene_name = scene_file.path.filename().string();

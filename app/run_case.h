@@ -21,6 +21,7 @@ struct RunCaseOptions {
   bool resume = false;
   bool quiet = false;
   double checkpoint_seconds = 10;
+  std::size_t trace_events = 0;                           // stages of steps to note for a trace (sim/stage.h)
   int threads = 0;                                        // 0 = OpenMP's own choice
   std::shared_ptr<const CaseParticles> placed;            // particles of an earlier run that this one shares; null: place them
   std::optional<DrySettings> dry;                         // leaflets alone under a pressure difference (dry_case.h)

@@ -58,12 +58,12 @@ void print_run_result(const sim::RunResult& result, const std::filesystem::path&
 
 void print_profile(const sim::RunResult& result) {
   double total = 0;
-  for (double seconds : result.stage_seconds) total += seconds;
+  for (double seconds : result.stage_times.seconds) total += seconds;
   std::fprintf(stderr, "%-22s %8s %6s %8s\n", "stage", "s", "%", "ms/step");
-  for (std::size_t stage = 0; stage < result.stage_seconds.size(); ++stage)
-    if (result.stage_seconds[stage] > 0)
-      std::fprintf(stderr, "%-22s %8.2f %6.1f %8.2f\n", sim::stage_names[stage], result.stage_seconds[stage],
-                   100 * result.stage_seconds[stage] / total, 1e3 * result.stage_seconds[stage] / static_cast<double>(result.steps));
+  for (std::size_t stage = 0; stage < result.stage_times.seconds.size(); ++stage)
+    if (result.stage_times.seconds[stage] > 0)
+      std::fprintf(stderr, "%-22s %8.2f %6.1f %8.2f\n", sim::stage_names[stage], result.stage_times.seconds[stage],
+                   100 * result.stage_times.seconds[stage] / total, 1e3 * result.stage_times.seconds[stage] / static_cast<double>(result.steps));
   if (result.steps > 0 && result.particle_steps > 0)
     std::fprintf(stderr, "%.3g s a step, %.3g microseconds a particle and step\n", result.wall_seconds / static_cast<double>(result.steps),
                  1e6 * result.wall_seconds / result.particle_steps);

@@ -88,6 +88,7 @@ void read_elastic_material(const TableReader& reader, const SceneContext& contex
     body.fibre_direction->normalize();
   }
   material.thickness = reader.number("thickness", positive, 0);
+  material.bending_thickness_ratio = reader.number("bending_thickness_ratio", {0, 1, true, false, "a number above 0 and at most 1"}, 1);
 }
 
 std::uint8_t read_directions(const TableReader& reader, int dimension) {
@@ -191,8 +192,7 @@ BodySpec read_body(const toml::table& table, const std::string& path, const Scen
   BodySpec body;
   body.spot = reader.spot();
   body.name = reader.text("name");
-  if (!usable_name(body.name))
-    refuse(reader.spot("name"), "\"" + body.name + "\" can't be a name", "use letters, digits, - and _");
+  if (!usable_name(body.name)) refuse(reader.spot("name"), "\"" + body.name + "\" can't be a name", "use letters, digits, - and _");
   const std::string kind = reader.choice("kind", {"fluid", "elastic", "wall"});
   body.kind = kind == "fluid" ? sim::Kind::fluid : kind == "wall" ? sim::Kind::wall : sim::Kind::elastic;
   body.shape = read_shape(reader.table("shape"), path + ".shape", context);
@@ -215,7 +215,7 @@ BodySpec read_body(const toml::table& table, const std::string& path, const Scen
   }
   const TableReader material(reader.table("material"), path + ".material",
                              {"density", "law", "youngs_modulus", "poisson_ratio", "fibre_modulus", "fibre_stiffening", "fibre_limit",
-                              "fibre_direction", "damping", "stiffness_map", "plane", "thickness"});
+                              "fibre_direction", "damping", "stiffness_map", "plane", "thickness", "bending_thickness_ratio"});
   read_elastic_material(material, context, body);
   for (const TableReader* place : {&material, &reader}) {
     body.elastic.damping = place->number("damping", not_negative, body.elastic.damping);

@@ -74,7 +74,6 @@ void read_domain(const TableReader& top, SceneFile& scene) {
 }
 
 void read_limits(const TableReader& top, SceneFile& scene) {
-  scene.limits.penetration = 1;  // l0; of a scene file stricter than of the library
   if (!top.has("limits")) return;
   const TableReader reader(top.table("limits"), "limits", {"particles", "memory", "wall_time", "lost", "penetration", "density_error"});
   scene.limits.particles = reader.integer("particles", {1, 1e12, false, false, "a whole number from 1"}, scene.limits.particles);

@@ -7,8 +7,9 @@
 namespace app {
 namespace {
 
-const std::vector<std::string> material_keys{"density",          "law",         "youngs_modulus", "poisson_ratio", "fibre_modulus",
-                                             "fibre_stiffening", "fibre_limit", "damping",        "thickness"};
+const std::vector<std::string> material_keys{
+    "density",          "law",         "youngs_modulus", "poisson_ratio", "fibre_modulus",
+    "fibre_stiffening", "fibre_limit", "damping",        "thickness",     "bending_thickness_ratio"};
 
 std::vector<std::string> valve_keys() {
   std::vector<std::string> keys = material_keys;
@@ -131,6 +132,7 @@ void check_valve(const TableReader& top, const SceneContext& context, PatientSpe
   if (valve.has("file")) patient.leaflets = existing_file(valve, "file", context), patient.leaflets_unit = read_unit(valve, 1e-3);
   for (const char* key : {"density", "youngs_modulus", "thickness", "fibre_limit"}) valve.number(key, positive, 1);
   for (const char* key : {"fibre_modulus", "fibre_stiffening", "damping"}) valve.number(key, not_negative, 1);
+  valve.number("bending_thickness_ratio", {0, 1, true, false, "a number above 0 and at most 1"}, 1);
   valve.number("poisson_ratio", {-1, 0.5, true, true, "a number above -1 and below 0.5"}, 0);
   valve.choice("law", {"linear", "corotated", "st-venant-kirchhoff", "neo-hookean", "fibre-reinforced"}, "neo-hookean");
   if (valve.has("coaptation")) patient.coaptation = valve.number("coaptation", positive);

@@ -2,8 +2,8 @@
 //
 // New bytes behind the last finished state are written straight away: nothing refers to them yet. Changes before it are kept in memory
 // until H5Fflush or H5Fclose; then they go into `FILE.journal` with a checksum, then into the file, then the journal is emptied. Whoever
-// opens the file next applies a complete journal again (it may be applied twice) and drops an incomplete one. Where a write fails (disk full)
-// H5Fflush fails, and the file stays as it was at the last flush that succeeded.
+// opens the file next applies a complete journal again (it may be applied twice) and drops an incomplete one. Where a write fails (disk
+// full) H5Fflush fails, and the file stays as it was at the last flush that succeeded.
 #pragma once
 
 #include <hdf5.h>

@@ -196,12 +196,12 @@ SolveReport solve_pressure(const Scene<D>& scene, State<D>& state, Workspace<D>&
   }
   Multigrid* multigrid = nullptr;
   if (unknowns > 400) {
-    const StageClock clock(work.stage_seconds, Stage::multigrid_setup);
+    const StageClock clock(work.stage_times, Stage::multigrid_setup);
     work.multigrid = build_multigrid(work.coupling.empty() ? work.matrix : matrix_for_multigrid(work));
     multigrid = &work.multigrid;
   }
   const SchemeSettings& scheme = scene.description.scheme;
-  const StageClock clock(work.stage_seconds, Stage::pressure_solve);
+  const StageClock clock(work.stage_times, Stage::pressure_solve);
   const SolveReport report = conjugate_gradient(
       work.matrix, work.source, work.solution, scheme.pressure_tolerance, scheme.pressure_iterations, multigrid, work.scratch,
       work.coupling.empty() && !scene.solids ? std::function<void(std::span<const double>, std::span<double>)>{}

@@ -266,6 +266,7 @@ RunFrame make_run_frame(const Scene<D>& scene, const State<D>& state) {
 template <int D>
 RunResult run(const Scene<D>& scene, const RunSetup& setup) {
   Running<D> running{scene, setup, {}, {}, {}, {}, {}, {}};
+  running.work.stage_times.trace.reserve(setup.trace_events);
   running.start();
   running.result.columns = complete_header(scene, setup.header).columns;
   if (!running.finished())
@@ -278,7 +279,7 @@ RunResult run(const Scene<D>& scene, const RunSetup& setup) {
   running.result.steps = running.state.step;
   running.result.frames = running.book.frames;
   running.result.wall_seconds = running.wall();
-  running.result.stage_seconds = running.work.stage_seconds;
+  running.result.stage_times = std::move(running.work.stage_times);
   return std::move(running.result);
 }
 

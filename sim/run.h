@@ -10,6 +10,7 @@
 
 #include "sim/run_file.h"
 #include "sim/scene.h"
+#include "sim/stage.h"
 #include "sim/step.h"
 
 namespace sim {
@@ -27,6 +28,7 @@ struct RunSetup {
   std::filesystem::path file;
   RunHeader header;                // program, scene text, lumen; the rest is filled in from the scene
   bool resume = false;             // go on from the checkpoint in `file`
+  std::size_t trace_events = 0;    // of the stages of the steps, noted in the result until there are so many
   double checkpoint_seconds = 10;  // wall time between checkpoints; 0 = at every frame
   std::vector<std::string> warnings;
   std::function<void(const RunProgress&)> progress;  // after every step
@@ -39,9 +41,9 @@ struct RunResult {
   std::string message;  // why it failed or stopped
   double time = 0;      // s reached
   std::int64_t steps = 0, frames = 0;
-  double wall_seconds = 0;            // earlier parts included
-  double particle_steps = 0;          // of this part
-  std::vector<double> stage_seconds;  // by Stage, of this part
+  double wall_seconds = 0;    // earlier parts included
+  double particle_steps = 0;  // of this part
+  StageTimes stage_times;     // of this part
   std::vector<std::string> columns;
   std::vector<double> last_row;
   std::vector<std::string> over_limits;  // of a finished run: books of the ledger over their limits (ledger.h)

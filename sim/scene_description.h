@@ -54,6 +54,9 @@ struct ElasticMaterial {
   double damping = 0;            // 1/s, mass-proportional
   bool plane_stress = false;     // 2-D only
   double thickness = 0;          // m, shells only: the material thickness
+  // Shells only, (0, 1]: thickness of the one solid sheet that bends as stiffly as the tissue, over its thickness. 1 = one solid sheet;
+  // layers of shares f_k that slide freely on one another have sqrt(sum f_k^3).
+  double bending_thickness_ratio = 1;
 };
 
 struct Body {
@@ -192,7 +195,7 @@ struct Limits {
   double wall_time = 0;     // s; 0 = none
   // Of the ledger at the end of a run; over one of them the run counts as failed.
   std::int64_t lost = 0;        // particles neither inside nor accounted as out
-  double penetration = 4;       // l0, deepest place of blood behind a leaflet or wall before it was put back
+  double penetration = 1;       // l0, deepest place of blood behind a leaflet or wall before it was put back
   double density_error = 0.25;  // rms of n/n0 - 1
 };
 

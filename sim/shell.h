@@ -5,8 +5,8 @@
 //   a_a = sum_j g_a,ij d_ij (deformed tangents), H_ab = sum_j q_ab,ij d_ij (second derivatives), n = normal of the a_a,
 //   C_ab = a_a . a_b (metric), kappa_ab = n . H_ab - kappa0_ab (change of curvature).
 // Energy of a particle of area A, thickness h:
-//   A h/2 [W(C - 2 z kappa) + W(C + 2 z kappa)], z = h / (2 sqrt 3): both through-thickness Gauss points (= h^2/24 C:kappa:kappa at small
-//   strain)
+//   A h/2 [W(C - 2 z kappa) + W(C + 2 z kappa)], z = h_b / (2 sqrt 3): both through-thickness Gauss points (= h_b^2/24 C:kappa:kappa at
+//   small strain), h_b = h for one solid sheet, less where the tissue's layers slide on one another; its faces are at +- h_b / 2
 //   + A h s^2/24 sum_k gamma_k : C : gamma_k, gamma_k = (d_k C)/2, s^2 = A: strain varying within the cell (stops in-plane saw-tooth)
 // Forces are its exact gradient up to the limiter; all terms are rotation invariant.
 #pragma once
@@ -32,6 +32,7 @@ struct ShellBody {
   std::int32_t first = 0, count = 0;  // shell rows
   double spacing = 0;                 // m, sqrt of the mean area (2-D: mean length)
   double thickness = 0;               // m
+  double bending_thickness = 0;       // m: of the solid sheet that bends alike (ElasticMaterial::bending_thickness_ratio)
   double density = 0;                 // kg/m3
   double damping = 0;                 // 1/s
   SheetMaterial material;

@@ -254,9 +254,12 @@ void append_body(ShellElasticity<D>& shells, const SceneDescription<D>& descript
   body.first = static_cast<std::int32_t>(shells.size());
   body.count = static_cast<std::int32_t>(source.count);
   body.thickness = source.elastic.thickness;
+  body.bending_thickness = source.elastic.bending_thickness_ratio * body.thickness;
   body.density = source.elastic.density;
   body.damping = source.elastic.damping;
   if (!(body.thickness > 0)) throw std::invalid_argument("shell body '" + source.name + "': thickness must be > 0 m");
+  if (!(body.bending_thickness > 0 && body.bending_thickness <= body.thickness))
+    throw std::invalid_argument("shell body '" + source.name + "': bending_thickness_ratio must lie in (0, 1]");
   if (!(body.density > 0)) throw std::invalid_argument("shell body '" + source.name + "': density must be > 0 kg/m3");
   try {
     body.material = sheet_material(source.elastic);

@@ -45,7 +45,7 @@ double shell_energy(const ShellElasticity<D>& shells, std::span<const Vector<D>>
     if (idle(shells, i)) continue;
     const Kinematics<D> k = kinematics(shells, x.data(), i);
     const ShellBody& body = shells.bodies[shells.body[i]];
-    const double volume = shells.area[i] * body.thickness * shells.stiffness_scale[i], z = body.thickness / (2 * std::sqrt(3.0));
+    const double volume = shells.area[i] * body.thickness * shells.stiffness_scale[i], z = body.bending_thickness / (2 * std::sqrt(3.0));
     const double both = 0.5 * (sheet_energy(body.material, k.metric - k.curvature * (2 * z), shells.fibre[i]) +
                                sheet_energy(body.material, k.metric + k.curvature * (2 * z), shells.fibre[i]));
     const double membrane = sheet_energy(body.material, k.metric, shells.fibre[i]);
@@ -70,7 +70,7 @@ double shell_time_step_limit(const ShellElasticity<D>& shells, std::span<const V
   for (std::int32_t i = 0; i < rows; ++i) {
     const Kinematics<D> k = kinematics(shells, x.data(), i);
     const ShellBody& body = shells.bodies[shells.body[i]];
-    const double small = body.material.sheet_lambda + 2 * body.material.shear_modulus, z = body.thickness / (2 * std::sqrt(3.0));
+    const double small = body.material.sheet_lambda + 2 * body.material.shear_modulus, z = body.bending_thickness / (2 * std::sqrt(3.0));
     for (double side : {-1.0, 1.0})
       stiffest = std::max(stiffest, largest_tangent(body.material, k.metric + k.curvature * (2 * z * side), shells.fibre[i]) / small);
   }

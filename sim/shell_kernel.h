@@ -122,7 +122,7 @@ bool energy_derivatives(const ShellElasticity<D>& shells, std::int32_t i, const 
   const ShellBody& body = shells.bodies[shells.body[i]];
   const SheetMaterial& material = body.material;
   const double volume = shells.area[i] * body.thickness * shells.stiffness_scale[i];
-  const double z = body.thickness / (2 * std::sqrt(3.0));
+  const double z = body.bending_thickness / (2 * std::sqrt(3.0));
   bool limited = false;
   const SheetTensor upper = sheet_stress(material, k.metric - k.curvature * (2 * z), shells.fibre[i], &limited);
   const SheetTensor lower = sheet_stress(material, k.metric + k.curvature * (2 * z), shells.fibre[i], &limited);

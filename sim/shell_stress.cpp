@@ -62,7 +62,7 @@ void shell_stress(const ShellElasticity<D>& shells, std::span<const Vector<D>> p
   for (std::int32_t i = 0; i < rows; ++i) {
     const Kinematics<D> k = kinematics(shells, x.data(), i);
     const ShellBody& body = shells.bodies[shells.body[i]];
-    const double z = face == Face::middle ? 0 : face == Face::plus ? 0.5 * body.thickness : -0.5 * body.thickness;
+    const double z = face == Face::middle ? 0 : face == Face::plus ? 0.5 * body.bending_thickness : -0.5 * body.bending_thickness;
     const Eigen::Matrix<double, 3, 2> q = rotated_tangents(k);
     // At a clamp the moment is the weighted curvature's (the row shares its cell's bending with the held row).
     stress[i] = q *
@@ -82,7 +82,7 @@ void shell_largest_strain(const ShellElasticity<D>& shells, std::span<const Vect
     const Kinematics<D> k = kinematics(shells, x.data(), i);
     strain[i] = 0;
     for (double side : {-0.5, 0.5}) {
-      const Eigen::Matrix2d u = square_root(metric_at(k.metric, k.curvature, side * shells.bodies[shells.body[i]].thickness));
+      const Eigen::Matrix2d u = square_root(metric_at(k.metric, k.curvature, side * shells.bodies[shells.body[i]].bending_thickness));
       const double mean = 0.5 * u.trace(), radius = std::sqrt(std::max(0.0, mean * mean - u.determinant()));
       strain[i] = std::max({strain[i], std::abs(mean + radius - 1), std::abs(mean - radius - 1)});
     }

@@ -42,9 +42,9 @@ struct SolidMotion {
   std::optional<SolidPattern<D>> pattern;
   Eigen::SparseMatrix<double> matrix;
   SymmetricSolver solver;
-  double factorised_for = 0;              // s, the d*h of the factor in `solver`; 0 = none
-  std::vector<Vector<D>> factorised_at;   // m, positions it was made at
-  bool factor_lost = false;               // factorised_for and factorised_at are known, the factor itself has to be made again
+  double factorised_for = 0;             // s, the d*h of the factor in `solver`; 0 = none
+  std::vector<Vector<D>> factorised_at;  // m, positions it was made at
+  bool factor_lost = false;              // factorised_for and factorised_at are known, the factor itself has to be made again
 };
 
 // Advances position and velocity (first n rows) by input.duration. mean_force: time mean of everything but external_force and the added

@@ -33,35 +33,36 @@ struct StageEvent {
   Stage stage;
   double start, duration;
 };
-// Where the clocks also note every interval while there is room in its capacity; null: nowhere. Set by the program's --profile, before a
-// run.
-inline std::vector<StageEvent>* stage_trace = nullptr;
+struct StageTimes {
+  std::vector<double> seconds;    // by Stage, summed; empty before the first
+  std::vector<StageEvent> trace;  // every interval while there is room in its capacity (none by itself)
+};
 
 // Adds the wall time between its making and its end to the stage's seconds.
 class StageClock {
  public:
-  StageClock(std::vector<double>& seconds, Stage stage) : seconds_(seconds), stage_(static_cast<std::size_t>(stage)) {
-    seconds_.resize(stage_names.size(), 0);
+  StageClock(StageTimes& times, Stage stage) : times_(times), stage_(static_cast<std::size_t>(stage)) {
+    times_.seconds.resize(stage_names.size(), 0);
   }
   ~StageClock() {
     const double duration = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    seconds_[stage_] += duration;
-    if (stage_trace && stage_trace->size() < stage_trace->capacity())
-      stage_trace->push_back({static_cast<Stage>(stage_), std::chrono::duration<double>(start_.time_since_epoch()).count(), duration});
+    times_.seconds[stage_] += duration;
+    if (times_.trace.size() < times_.trace.capacity())
+      times_.trace.push_back({static_cast<Stage>(stage_), std::chrono::duration<double>(start_.time_since_epoch()).count(), duration});
   }
   StageClock(const StageClock&) = delete;
   StageClock& operator=(const StageClock&) = delete;
 
  private:
-  std::vector<double>& seconds_;
+  StageTimes& times_;
   std::size_t stage_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 // Runs `work` on the clock of `stage`.
 template <class Work>
-decltype(auto) timed(std::vector<double>& seconds, Stage stage, Work&& work) {
-  const StageClock clock(seconds, stage);
+decltype(auto) timed(StageTimes& times, Stage stage, Work&& work) {
+  const StageClock clock(times, stage);
   return work();
 }
 

@@ -92,7 +92,7 @@ void check_step(const Scene<D>& scene, const State<D>& state, double dt) {
 template <int D>
 void viscosity_stage(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
   if (!scene.viscosity) return;
-  const StageClock clock(work.stage_seconds, Stage::viscosity);
+  const StageClock clock(work.stage_times, Stage::viscosity);
   particle_viscosity(scene, state, work);
   if (scene.viscosity->corrected) add_laplacian_correction(scene, state, work);
   work.boundary_force.assign(static_cast<std::size_t>(scene.elastic_count + scene.shell_count), Vector<D>::Zero());
@@ -117,7 +117,7 @@ std::span<const Vector<D>> shell_rows(const Scene<D>& scene, std::span<const Vec
 template <int D>
 void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, std::span<const Vector<D>> from, double dt,
                 StepReport& report) {
-  std::vector<double>& clocks = work.stage_seconds;
+  StageTimes& clocks = work.stage_times;
   report.elastic_substeps = 0;  // a refused step's do not count
   find_neighborhood(scene, state, work);
   timed(clocks, Stage::ports_and_walls, [&] {
@@ -172,7 +172,7 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, std:
 // Solids and shells alone, under their loads.
 template <int D>
 void step_dry(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
-  const StageClock clock(work.stage_seconds, Stage::elastic);
+  const StageClock clock(work.stage_times, Stage::elastic);
   if (scene.description.scheme.name == Scheme::paper) return step_paper_solids(scene, state, work, dt, report);
   if (scene.solids) {
     report.elastic_substeps = predict_solids(scene, state, work, dt);
@@ -218,8 +218,8 @@ void look_around(const Scene<D>& scene, const State<D>& state, Workspace<D>& wor
 template <int D>
 void find_neighborhood(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
   const std::size_t n = state.size();
-  timed(work.stage_seconds, Stage::neighbors, [&] { look_around(scene, state, work); });
-  timed(work.stage_seconds, Stage::sides, [&] {
+  timed(work.stage_times, Stage::neighbors, [&] { look_around(scene, state, work); });
+  timed(work.stage_times, Stage::sides, [&] {
     if (scene.sheet)
       cut_links(scene, state, work);
     else

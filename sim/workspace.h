@@ -13,6 +13,7 @@
 #include "sim/neighbors.h"
 #include "sim/particles.h"
 #include "sim/solid_dynamics.h"
+#include "sim/stage.h"
 
 namespace sim {
 
@@ -108,7 +109,7 @@ struct Workspace {
   std::vector<double> shell_area, shell_normal_mass;  // m², kg: that moves along the normal, with the blood that follows
   std::vector<Vector<D>> boundary_force;              // rows of solids and shells: the blood's drag, N
 
-  std::vector<double> stage_seconds;  // per stage of the step, summed over this run
+  StageTimes stage_times;  // of this run
 };
 
 }  // namespace sim

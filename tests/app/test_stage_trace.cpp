@@ -8,16 +8,14 @@
 namespace {
 
 TEST(StageTrace, NotesIntervalsAndWritesThemAsTraceEvents) {
-  std::vector<sim::StageEvent> events;
-  events.reserve(3);
-  sim::stage_trace = &events;
-  std::vector<double> seconds;
-  for (int k = 0; k < 5; ++k) sim::timed(seconds, k % 2 ? sim::Stage::pressure_solve : sim::Stage::neighbors, [] {});
-  sim::stage_trace = nullptr;
-  sim::timed(seconds, sim::Stage::motion, [] {});
-  ASSERT_EQ(events.size(), 3u);  // what there is room for, and nothing once it is off
+  sim::StageTimes times, untraced;
+  times.trace.reserve(3);
+  for (int k = 0; k < 5; ++k) sim::timed(times, k % 2 ? sim::Stage::pressure_solve : sim::Stage::neighbors, [] {});
+  sim::timed(untraced, sim::Stage::motion, [] {});
+  ASSERT_EQ(times.trace.size(), 3u);    // what there is room for
+  EXPECT_TRUE(untraced.trace.empty());  // and nothing where nobody asked
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "cusp_test_trace.json";
-  app::write_stage_trace(events, file);
+  app::write_stage_trace(times.trace, file);
   const nlohmann::json trace = nlohmann::json::parse(std::ifstream(file));
   std::filesystem::remove(file);
   ASSERT_EQ(trace["traceEvents"].size(), 4u);  // and the process's name
@@ -25,7 +23,7 @@ TEST(StageTrace, NotesIntervalsAndWritesThemAsTraceEvents) {
   EXPECT_EQ(second["name"], "pressure solve");
   EXPECT_EQ(second["ph"], "X");
   EXPECT_GE(second["ts"].get<double>(), trace["traceEvents"][1]["ts"].get<double>());
-  EXPECT_DOUBLE_EQ(second["dur"].get<double>(), 1e6 * events[1].duration);
+  EXPECT_DOUBLE_EQ(second["dur"].get<double>(), 1e6 * times.trace[1].duration);
 }
 
 }  // namespace
