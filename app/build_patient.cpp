@@ -189,8 +189,8 @@ void set_patient_wave(const PatientSpec& patient, sim::Port<3>& port) {
   port.condition = sim::PortCondition::pressure;
   port.table = scaled_wave(ventricle ? patient.ventricle_pressure : patient.aortic_pressure,
                            ventricle ? "ventricle_pressure.csv" : "aortic_pressure.csv", patient.heart_rate);
-  // The vessel beyond the outlet gives way to fast changes of flow (ports.h); a rigid outlet rings. Half of rho c, c = 5 m/s: the full value
-  // keeps 0.5 kPa of the opening pressure from the valve.
+  // The vessel beyond the outlet gives way to fast changes of flow (ports.h); a rigid outlet rings. Half of rho c, c = 5 m/s: the full
+  // value keeps 0.5 kPa of the opening pressure from the valve.
   if (!ventricle && port.impedance == 0) port.impedance = 0.5 * 1060 * 5.0;
 }
 

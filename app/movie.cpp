@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "app/difference.h"
+#include "app/run_names.h"
 #include "app/valve_moments.h"
 #include "render/camera_motion.h"
 #include "render/video.h"
@@ -129,18 +130,18 @@ std::size_t frame_of_picture(const MovieJob& job, const sim::RunReader& run, con
 }
 
 // The first frame's plots, with the curves of the others in those where each run has a single one.
-void compare_plots(std::vector<render::Frame>& frames) {
+void compare_plots(std::vector<render::Frame>& frames, const std::vector<std::string>& names) {
   static const std::vector<render::Color> colors = {
       {0.10f, 0.32f, 0.66f}, {0.85f, 0.45f, 0.05f}, {0.10f, 0.50f, 0.40f}, {0.55f, 0.20f, 0.55f}};
   for (std::size_t p = 0; p < frames.front().plots.size(); ++p) {
     render::Plot& plot = frames.front().plots[p];
     if (plot.curves.size() != 1) continue;
-    plot.curves[0].label = frames.front().title;
+    plot.curves[0].label = names.front();
     plot.curves[0].color = colors[0];
-    for (std::size_t i = 1; i < frames.size(); ++i) {
+    for (std::size_t i = 1; i < names.size(); ++i) {
       if (p >= frames[i].plots.size() || frames[i].plots[p].label != plot.label || frames[i].plots[p].curves.size() != 1) continue;
       render::Curve curve = frames[i].plots[p].curves[0];
-      curve.label = frames[i].title;
+      curve.label = names[i];
       curve.color = colors[i % colors.size()];
       plot.curves.push_back(curve);
     }
@@ -209,20 +210,28 @@ struct Runs {
     for (std::size_t run = 0; run < makers.size(); ++run) frames.push_back(one(run, beside(run, index)));
     std::optional<render::Frame> difference;
     if (!extent.empty()) difference = difference_frame(frames[0], frames[1], extent);
-    for (render::Frame& frame : frames) {
-      for (render::Panel& panel : frame.panels) {
-        panel.title = frame.title + (panel.title.empty() ? "" : ": " + panel.title);
-        panel.note = frame.subtitle;
+    std::vector<std::string> titles, settings;
+    for (const render::Frame& frame : frames) titles.push_back(frame.title), settings.push_back(frame.subtitle);
+    std::vector<std::vector<std::string>> keys;
+    for (const sim::RunReader& reader : readers) keys.push_back(reader.header().settings);
+    const RunNames called = run_names(titles, settings, keys);
+    for (std::size_t run = 0; run < frames.size(); ++run) {
+      for (render::Panel& panel : frames[run].panels) {
+        panel.note = panel.title;
+        panel.title = called.names[run];
       }
-      frame.subtitle.clear();  // it stands in the panels, and so do the numbers that differ: in the plots
-      frame.readouts.clear();
+      frames[run].subtitle = called.shared;
+      frames[run].readouts.clear();  // the numbers differ: they stand in the plots
     }
     if (difference) {
-      for (render::Panel& panel : difference->panels) panel.title = "Difference: " + panel.title;
+      for (render::Panel& panel : difference->panels) {
+        panel.title = "Difference: " + panel.title;
+        panel.note = called.names[1] + " minus " + called.names[0];
+      }
       difference->title.clear();
       frames.push_back(std::move(*difference));
     }
-    compare_plots(frames);
+    compare_plots(frames, called.names);
     return render::side_by_side(frames);
   }
 };

@@ -63,7 +63,8 @@ void print_profile(const sim::RunResult& result) {
   for (std::size_t stage = 0; stage < result.stage_times.seconds.size(); ++stage)
     if (result.stage_times.seconds[stage] > 0)
       std::fprintf(stderr, "%-22s %8.2f %6.1f %8.2f\n", sim::stage_names[stage], result.stage_times.seconds[stage],
-                   100 * result.stage_times.seconds[stage] / total, 1e3 * result.stage_times.seconds[stage] / static_cast<double>(result.steps));
+                   100 * result.stage_times.seconds[stage] / total,
+                   1e3 * result.stage_times.seconds[stage] / static_cast<double>(result.steps));
   if (result.steps > 0 && result.particle_steps > 0)
     std::fprintf(stderr, "%.3g s a step, %.3g microseconds a particle and step\n", result.wall_seconds / static_cast<double>(result.steps),
                  1e6 * result.wall_seconds / result.particle_steps);

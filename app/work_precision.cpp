@@ -10,7 +10,7 @@ namespace {
 
 constexpr double not_told = std::numeric_limits<double>::quiet_NaN();
 
-constexpr double shortest_cost_that_tells = 0.1;   // s: below it starting the program takes longer than the run
+constexpr double shortest_cost_that_tells = 0.1;  // s: below it starting the program takes longer than the run
 
 }  // namespace
 

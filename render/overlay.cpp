@@ -201,13 +201,15 @@ void draw_plot(Image& image, const Rect& place, const Plot& plot, const std::opt
   float x = left +
             lettering.bold.draw(image, left, top - 0.6f * em, small, plot.label + (plot.unit.empty() ? "" : " [" + plot.unit + "]"), ink) +
             em;
+  const auto labelled = std::ranges::count_if(plot.curves, [](const Curve& c) { return !c.time.empty() && !c.label.empty(); });
+  const float room = (right - x) / as_float(static_cast<int>(std::max<std::ptrdiff_t>(labelled, 1))) - 2.4f * em;
   for (const Curve& curve : plot.curves) {
     if (curve.time.empty()) continue;
     draw_curve(image, curve, to_x, to_y, std::max(1.5f, 0.11f * em));
     if (curve.label.empty()) continue;
     fill(image, x, top - 0.95f * em, 1.1f * em, std::max(2.0f, 0.16f * em), curve.color);
     x += 1.4f * em;
-    x += lettering.regular.draw(image, x, top - 0.6f * em, small, curve.label, ink) + em;
+    x += lettering.regular.draw(image, x, top - 0.6f * em, small, shortened(curve.label, room, small, lettering), ink) + em;
   }
   if (!now || *now < span.first || *now > span.last) return;
   stroke(image, to_x(*now), top, to_x(*now), bottom, std::max(1.5f, 0.09f * em), ink, 0.7f);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "tests/sim/shell_scenes.h"
@@ -39,6 +40,9 @@ TEST(Shell, ForcesAreTheEnergysGradient) {
   expect_forces_are_energy_gradient<3>(
       sim::build_shells(strip(6e-3, 5e-3, 1e-3, 2, tissue(0.45, 0.5e-3, sim::ElasticLaw::corotated), 0.2)));
   expect_forces_are_energy_gradient<3>(sim::build_shells(tube(5e-3, 6e-3, 1e-3, 0.1, tissue())));
+  sim::ElasticMaterial layered = tissue();
+  layered.bending_thickness_ratio = 0.5;
+  expect_forces_are_energy_gradient<3>(sim::build_shells(strip(6e-3, 5e-3, 1e-3, 2, layered, 0.2)));
 }
 
 // A rigid turn by 90 degrees of an irregular curved sheet: no force, no stress.
@@ -108,6 +112,38 @@ TEST(Shell, StripFollowsElastica) {
       ASSERT_TRUE(report.converged) << report.message;
       EXPECT_NEAR(end_displacement<3>(shells, x, length, spacing).z() / length, r.deflection, (jitter > 0 ? 0.055 : 0.02) * r.deflection);
     }
+}
+
+// Two equal layers that slide on one another: EI = 2 E (h/2)^3 / 12, a quarter of the solid sheet's; pulled they are as stiff as that (EA).
+TEST(Shell, SlidingLayersBendAsTheirSumAndPullAsOne) {
+  const double length = 15e-3, width = 4e-3, spacing = 1e-3, h = 0.5e-3, layer = h / 2, stiffness = 2 * 1e6 * std::pow(layer, 3) / 12;
+  sim::ElasticMaterial material = tissue(0, h, sim::ElasticLaw::corotated);
+  material.bending_thickness_ratio = std::sqrt(2 * std::pow(0.5, 3));
+  const auto shells = sim::build_shells(strip(length, width, spacing, 2, material));
+  auto x = shells.rest_position;
+  const Eigen::Vector3d push(0, 0, stiffness / (length * length) * width);  // P L^2 / EI = 1 (elastica_tip_load.csv)
+  ASSERT_TRUE(sim::solve_shell_equilibrium<3>(shells, end_force<3>(shells, length, spacing, push), x).converged);
+  EXPECT_NEAR(end_displacement<3>(shells, x, length, spacing).z() / length, 0.301721, 0.02 * 0.301721);
+  // Face stress of a layer at the middle of its length: M (h_layer / 2) / (2 I_layer)
+  const double tip = length + end_displacement<3>(shells, x, length, spacing).x();
+  std::vector<Eigen::Matrix3d> face(shells.size());
+  sim::shell_stress<3>(shells, x, sim::Face::minus, face);
+  for (std::size_t i = 0; i < shells.size(); ++i) {
+    const Eigen::Vector3d& rest = shells.rest_position[i];
+    if (std::abs(rest.x() - 7.5e-3) > 0.1e-3 || std::abs(rest.y() - 2e-3) > 1e-3) continue;
+    const double expected = push.z() / width * (tip - x[i].x()) * (layer / 2) / (2 * std::pow(layer, 3) / 12);
+    EXPECT_NEAR(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(face[i]).eigenvalues()[2], expected, 0.05 * expected);
+  }
+  material.bending_thickness_ratio = 1;
+  const auto solid = sim::build_shells(strip(length, width, spacing, 2, material));
+  auto y = solid.rest_position;
+  x = shells.rest_position;
+  const Eigen::Vector3d pull(0.001 * 1e6 * h * width, 0, 0);
+  ASSERT_TRUE(sim::solve_shell_equilibrium<3>(shells, end_force<3>(shells, length, spacing, pull), x).converged);
+  ASSERT_TRUE(sim::solve_shell_equilibrium<3>(solid, end_force<3>(solid, length, spacing, pull), y).converged);
+  const double stretched = end_displacement<3>(solid, y, length, spacing).x();
+  EXPECT_GT(stretched, 0.0009 * length);
+  EXPECT_NEAR(end_displacement<3>(shells, x, length, spacing).x(), stretched, 1e-6 * stretched);
 }
 
 // Clamped circular plate, small uniform pressure: w(0) = p a^4 / (64 D); rings of particles, no lattice. Ten rings: 6.5 % soft,
@@ -263,6 +299,8 @@ TEST(Shell, RefusesWhatCannotWork) {
   input.duration = 1e-4;
   EXPECT_THROW(sim::shell_substeps<2>(shells, nullptr, input, x, v, {}), std::invalid_argument);
   scene.bodies[0].elastic.thickness = 0;
+  EXPECT_THROW(sim::build_shells(scene), std::invalid_argument);
+  scene.bodies[0].elastic.thickness = 0.5e-3, scene.bodies[0].elastic.bending_thickness_ratio = 1.1;
   EXPECT_THROW(sim::build_shells(scene), std::invalid_argument);
   EXPECT_THROW(sim::build_shells(beam(1e-3, 1e-3, 0, tissue())), std::invalid_argument);  // one particle is no beam
 }
