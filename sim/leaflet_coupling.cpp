@@ -184,10 +184,7 @@ void correct_leaflets(const Scene<D>& scene, State<D>& state, Workspace<D>& work
     for (int k = 0; k < D; ++k)
       if (shells.fixed[s] >> k & 1) v[k] = 0;
     state.fluid_acceleration[first + s] = (v - state.velocity[first + s]) / dt;
-    Vector<D> move = 0.5 * dt * (v - work.shell_velocity[s]);
-    for (int k = 0; k < D; ++k)
-      if (shells.fixed[s] >> k & 1) move[k] = 0;
-    state.position[first + s] = work.shell_position[s] + move;
+    state.position[first + s] = work.shell_position[s];
     state.velocity[first + s] = v;
   }
 }

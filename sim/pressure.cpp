@@ -82,6 +82,7 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
   // The rate at which a density error is mended: with the step itself a step cut short would mend faster, drive blood faster, and be cut
   // shorter still.
   const double blend = scene.description.scheme.density_blend / (dt * std::max(dt, scene.description.scheme.maximum_step));
+  const bool closed = scene.sheet && !scene.pressure->free_surface;  // a vessel full of blood
   SymmetricMatrix& a = work.matrix;
   a.diagonal.assign(unknowns, 0);
   a.start.assign(unknowns + 1, 0);
@@ -107,10 +108,12 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
     std::int64_t entry = a.start[u];
     double diagonal = 0, divergence = 0, source = 0;
     bool beside_port = false;
+    double fastest = closed ? work.velocity[i].squaredNorm() : 0;  // (m/s)², around i
     for (std::int64_t e = work.neighbors.start[i]; e < work.neighbors.start[i + 1]; ++e) {
       const double w = work.link_weight[e];
       if (w == 0) continue;
       const std::int32_t j = work.neighbors.index[e];
+      if (closed) fastest = std::max(fastest, work.velocity[j].squaredNorm());
       if (j < scene.first_fluid && state.kind[j] == Kind::shell) continue;  // leaflet_coupling.cpp
       const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
       if (j >= scene.first_fluid && state.kind[j] == Kind::port) beside_port = true;
@@ -138,11 +141,13 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
       diagonal += volume * k / rho * std::max(work.surface_outward[i].norm() / (0.5 * scene.lattice.spacing), n0 * std::max(1 - n, 0.0));
     const double support = scene.sheet ? work.support[i] : 1.0;
     double mending = blend * compression;
-    if (scene.sheet && !scene.pressure->free_surface) {
-      // Past a leaflet's edge a jet piles up its density error while it passes a particle, l0/u: what is beyond the noise of a full but
-      // uneven arrangement is mended as fast. Beside a free surface neighbours are missing by right, and the error is not told from that.
+    if (closed) {
+      // What rests makes no density error, and must not be stirred by the unevenness that it starts with: an error is mended no faster
+      // than the flow passes a particle, |v|/l0. Past a leaflet's edge a jet piles its error up within that time: what is beyond the noise
+      // of a full but uneven arrangement is mended as fast. (Beside a free surface neighbours are missing by right: no telling there.)
       constexpr double noise = 0.03;
       const double error = std::copysign(std::max(std::abs(compression) - noise, 0.0), compression);
+      mending = std::min(blend, std::sqrt(fastest) / (scene.lattice.spacing * dt)) * compression;
       mending += state.velocity[i].norm() / (scene.lattice.spacing * dt) * error;
     }
     source += support * volume * (-work.velocity_gradient[i].trace() / dt - divergence + mending);

@@ -165,7 +165,7 @@ TEST(Ledger, SaysWhichBookIsOverItsLimit) {
   const auto lines = sim::over_limits(scene, state);
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0], "ledger: particles lost 1 is over limits.lost = 0");
-  EXPECT_EQ(lines[1], "ledger: deepest penetration 5 l0 is over limits.penetration = 4");
+  EXPECT_EQ(lines[1], "ledger: deepest penetration 5 l0 is over limits.penetration = 1");
 }
 
 }  // namespace
