@@ -70,7 +70,8 @@ namespace {
 template <int D>
 std::vector<double> face_pressures(const Workspace<D>& work, std::span<const double> pressure) {
   std::vector<double> face(work.wetting.size(), 0);
-  for (std::size_t a = 0; a < face.size(); ++a)
+#pragma omp parallel for schedule(static) if (face.size() > 1000)
+  for (Index a = 0; a < static_cast<Index>(face.size()); ++a)
     for (const auto& link : work.wetting[a]) face[a] += link.weight * pressure[link.unknown];
   film_pressure(work.film, face);
   return face;
@@ -115,14 +116,13 @@ void apply_coupling(const Workspace<D>& work, std::span<const double> x, std::sp
 }
 
 template <int D>
-SymmetricMatrix matrix_for_multigrid(const Workspace<D>& work) {
+void matrix_for_multigrid(const Workspace<D>& work, SymmetricMatrix& a) {
   constexpr std::size_t strongest = 4;  // links a side that stand for all
   struct Entry {
     std::int32_t row, column;
     double value;
   };
   std::vector<Entry> entries;
-  SymmetricMatrix a;
   a.diagonal = work.matrix.diagonal;
   for (const auto& c : work.coupling) {
     if (work.wet_share[2 * c.shell] < 0.5 || work.wet_share[2 * c.shell + 1] < 0.5) continue;
@@ -165,7 +165,6 @@ SymmetricMatrix matrix_for_multigrid(const Workspace<D>& work) {
       a.value[to] = entries[e].value;
     }
   }
-  return a;
 }
 
 template <int D>
@@ -193,7 +192,7 @@ void correct_leaflets(const Scene<D>& scene, State<D>& state, Workspace<D>& work
   template ShellSubstepReport predict_leaflets(const Scene<D>&, const State<D>&, Workspace<D>&, double); \
   template void couple_leaflets(const Scene<D>&, const State<D>&, Workspace<D>&, double);                \
   template void apply_coupling(const Workspace<D>&, std::span<const double>, std::span<double>);         \
-  template SymmetricMatrix matrix_for_multigrid(const Workspace<D>&);                                    \
+  template void matrix_for_multigrid(const Workspace<D>&, SymmetricMatrix&);                             \
   template void correct_leaflets(const Scene<D>&, State<D>&, Workspace<D>&, double);
 INSTANTIATE(2)
 INSTANTIATE(3)

@@ -37,7 +37,7 @@ void apply_coupling(const Workspace<D>& work, std::span<const double> x, std::sp
 
 // The pressure matrix with the rank-one terms replaced by links between the blood of the two sides: what the multigrid is built from.
 template <int D>
-SymmetricMatrix matrix_for_multigrid(const Workspace<D>& work);
+void matrix_for_multigrid(const Workspace<D>& work, SymmetricMatrix& matrix);
 
 // Velocities, positions, pressures, forces and accelerations of the leaflets from the solved pressure.
 template <int D>

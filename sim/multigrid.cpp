@@ -173,7 +173,8 @@ std::vector<double> dense_inverse(const MultigridLevel& level, const std::vector
 // a closed region leaves open.
 std::vector<double> row_sums(const SymmetricMatrix& matrix) {
   std::vector<double> sums(matrix.rows());
-  for (std::size_t i = 0; i < matrix.rows(); ++i) {
+#pragma omp parallel for schedule(static)
+  for (Index i = 0; i < static_cast<Index>(matrix.rows()); ++i) {
     double sum = matrix.diagonal[i];
     for (std::int64_t k = matrix.start[i]; k < matrix.start[i + 1]; ++k) sum += matrix.value[k];
     sums[i] = std::abs(sum) > 1e-13 * matrix.diagonal[i] ? sum : 0;
@@ -277,14 +278,17 @@ void cycle(Multigrid& mg, std::size_t depth) {
 
 }  // namespace
 
-Multigrid build_multigrid(const SymmetricMatrix& matrix) {
-  Multigrid mg;
+void build_multigrid(Multigrid& mg, const SymmetricMatrix& matrix) {
   MultigridLevel finest;
+  if (!mg.levels.empty()) finest = std::move(mg.levels.front());  // its room
+  mg.levels.clear();
+  mg.coarse_inverse.clear();
   const Index n = static_cast<Index>(matrix.rows()), entries = static_cast<Index>(matrix.column.size());
   finest.start = matrix.start;
   finest.column.resize(entries), finest.value.resize(entries), finest.diagonal.resize(n);
 #pragma omp parallel for schedule(static)
   for (Index k = 0; k < entries; ++k) finest.column[k] = matrix.column[k], finest.value[k] = static_cast<float>(matrix.value[k]);
+#pragma omp parallel for schedule(static)
   for (Index i = 0; i < n; ++i) finest.diagonal[i] = static_cast<float>(matrix.diagonal[i]);
   mg.levels.push_back(std::move(finest));
   std::vector<double> sums = row_sums(matrix);
@@ -302,7 +306,6 @@ Multigrid build_multigrid(const SymmetricMatrix& matrix) {
     mg.levels.push_back(std::move(coarse));
   }
   if (mg.levels.back().diagonal.size() <= 4 * coarsest) mg.coarse_inverse = dense_inverse(mg.levels.back(), sums);
-  return mg;
 }
 
 void apply_multigrid(Multigrid& mg, std::span<const double> r, std::span<double> z) {

@@ -202,7 +202,8 @@ SolveReport solve_pressure(const Scene<D>& scene, State<D>& state, Workspace<D>&
   Multigrid* multigrid = nullptr;
   if (unknowns > 400) {
     const StageClock clock(work.stage_times, Stage::multigrid_setup);
-    work.multigrid = build_multigrid(work.coupling.empty() ? work.matrix : matrix_for_multigrid(work));
+    if (!work.coupling.empty()) matrix_for_multigrid(work, work.multigrid_matrix);
+    build_multigrid(work.multigrid, work.coupling.empty() ? work.matrix : work.multigrid_matrix);
     multigrid = &work.multigrid;
   }
   const SchemeSettings& scheme = scene.description.scheme;

@@ -71,6 +71,8 @@ struct Running {
   std::string status_before{};  // of the run that is continued
   RunResult result{};
 
+  Running(const Scene<D>& of_scene, const RunSetup& with_setup) : scene(of_scene), setup(with_setup) {}
+
   double wall() const { return book.wall_seconds + now_seconds() - started; }
 
   void write_row(double time, const std::vector<std::vector<double>>& values) {
@@ -211,7 +213,7 @@ struct Running {
         end(RunEnding::failed, std::string("failed: ") + failure.what(), failure.what());
         return;
       } catch (const std::bad_alloc&) {
-        work = {}, scratch = {};  // room to say so; the last checkpoint stays, the present state may be half a step
+        work = Workspace<D>(), scratch = Workspace<D>();  // room to say so; the last checkpoint stays, the present state may be half a step
         const std::string message = "not enough memory at t = " + std::to_string(state.time) +
                                     " s; make the spacing larger, or raise limits.memory or the system's limit; `--continue` goes on";
         writer->set_status("failed: " + message, wall(), state.step);
@@ -265,7 +267,7 @@ RunFrame make_run_frame(const Scene<D>& scene, const State<D>& state) {
 
 template <int D>
 RunResult run(const Scene<D>& scene, const RunSetup& setup) {
-  Running<D> running{scene, setup, {}, {}, {}, {}, {}, {}};
+  Running<D> running(scene, setup);
   running.work.stage_times.trace.reserve(setup.trace_events);
   running.start();
   running.result.columns = complete_header(scene, setup.header).columns;

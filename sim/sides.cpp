@@ -1,6 +1,7 @@
 #include "sim/sides.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -83,9 +84,10 @@ struct NearElements {
   std::vector<std::int32_t> seen;  // per element: the last row that listed it
   std::vector<std::int32_t> element;
   // What the tests against all of them need, element by element in arrays so that they vectorise.
-  std::array<std::vector<double>, D> normal;
-  std::vector<double> offset, height;  // height: normal . x_i - offset
-  std::vector<std::uint8_t> opposite;  // filled up with zeros to whole words
+  std::array<std::vector<double>, D> normal, center;  // center: as seen from x_i
+  std::vector<double> height, reach;                  // height: normal . x_i - offset; reach: squared
+  std::vector<std::uint8_t> candidate;                // filled up with zeros to whole words
+  std::size_t near_count = 0;                         // of the first elements, which a link can cross in the half that begins at the row
 
   // Elements that hold a shell row near row i, each once, in the order of i's neighbours.
   void list(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, Index i) {
@@ -104,45 +106,55 @@ struct NearElements {
     }
   }
 
-  void measure(const State<D>& state, const Workspace<D>& work, Index i) {
+  void measure(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, Index i) {
     const std::size_t count = element.size();
-    offset.resize(count), height.resize(count), opposite.assign((count + 7) / 8 * 8, 0);
-    for (auto& component : normal) component.resize(count);
+    const double half = 0.5 * scene.lattice.radius;
+    const auto far = std::partition(element.begin(), element.end(), [&](std::int32_t e) {
+      const double least = half + work.sheet_elements[e].reach;
+      return (work.sheet_elements[e].center - state.position[i]).squaredNorm() <= least * least;
+    });
+    near_count = static_cast<std::size_t>(far - element.begin());
+    height.resize(count), reach.resize(count), candidate.assign((count + 7) / 8 * 8, 0);
+    for (int k = 0; k < D; ++k) normal[k].resize(count), center[k].resize(count);
     for (std::size_t c = 0; c < count; ++c) {
       const SheetElement<D>& e = work.sheet_elements[element[c]];
-      for (int k = 0; k < D; ++k) normal[k][c] = e.normal[k];
-      offset[c] = e.offset;
+      for (int k = 0; k < D; ++k) normal[k][c] = e.normal[k], center[k][c] = e.center[k] - state.position[i][k];
+      reach[c] = 1.0001 * e.reach * e.reach;
       height[c] = e.normal.dot(state.position[i]) - e.offset;
     }
   }
 
-  // Marks the elements of which `to` lies on the other side than x_i.
-  void find_opposite(const Vector<D>& to) {
-    const std::size_t count = element.size();
-    std::array<const double*, D> n;
-    for (int k = 0; k < D; ++k) n[k] = normal[k].data();
-    const double *off = offset.data(), *here = height.data();
-    std::uint8_t* result = opposite.data();
+  // Marks the elements, of the first `count`, of which x_i + d lies on the other side than x_i and which are near where d crosses their
+  // plane.
+  void find_candidates(const Vector<D>& d, std::size_t count) {
+    std::array<const double*, D> n, m;
+    for (int k = 0; k < D; ++k) n[k] = normal[k].data(), m[k] = center[k].data();
+    const double *here = height.data(), *far = reach.data();
+    std::uint8_t* result = candidate.data();
 #pragma omp simd
     for (std::size_t c = 0; c < count; ++c) {
-      double there = -off[c];
-      for (int k = 0; k < D; ++k) there += n[k][c] * to[k];
-      result[c] = static_cast<std::uint8_t>((here[c] > 0) ^ (there > 0));
+      double change = 0, aside = 0;
+      for (int k = 0; k < D; ++k) change += n[k][c] * d[k];
+      const double part = -here[c] / change;
+      for (int k = 0; k < D; ++k) aside += (part * d[k] - m[k][c]) * (part * d[k] - m[k][c]);
+      result[c] = static_cast<std::uint8_t>(((here[c] > 0) ^ (here[c] + change > 0)) & (aside <= far[c]));
     }
   }
 
-  // Whether the segment from x_i to `to`, which may end on the sheet at row `on` (-1: does not), crosses an element.
-  bool crosses(const Scene<D>& scene, const Workspace<D>& work, const Vector<D>& from, const Vector<D>& to, std::int32_t on) {
-    find_opposite(to);
-    for (std::size_t first = 0; first < element.size(); first += 8) {  // most are not: eight at a time are passed by
+  // Whether the segment from x_i to `to`, which may end on the sheet at row `on` (-1: does not), crosses one of the first `count` elements.
+  bool crosses(const Scene<D>& scene, const Workspace<D>& work, const Vector<D>& from, const Vector<D>& to, std::int32_t on,
+               std::size_t count) {
+    const Vector<D> d = to - from;
+    find_candidates(d, count);
+    for (std::size_t first = 0; first < count; first += 8) {  // most are none: eight at a time are passed by
       std::uint64_t word;
-      std::memcpy(&word, opposite.data() + first, 8);
+      std::memcpy(&word, candidate.data() + first, 8);
+      if (count - first < 8) word &= (std::uint64_t{1} << 8 * (count - first)) - 1;  // marks behind them are another link's
       for (; word != 0; word &= word - 1) {
         const std::size_t c = first + static_cast<std::size_t>(std::countr_zero(word)) / 8;
         const SheetElement<D>& e = work.sheet_elements[element[c]];
-        const double end = e.normal.dot(to) - e.offset;
-        const Vector<D> point = from + height[c] / (height[c] - end) * (to - from);
-        if ((point - e.center).squaredNorm() > 1.0001 * e.reach * e.reach || !in_element<D>(e, point)) continue;
+        const Vector<D> point = from - height[c] / e.normal.dot(d) * d;
+        if (!in_element<D>(e, point)) continue;
         const auto& rows = scene.sheet->elements[element[c]];
         if (on < 0 || std::find(rows.begin(), rows.end(), on) == rows.end()) return true;
       }
@@ -173,16 +185,18 @@ void cut_links(const Scene<D>& scene, const State<D>& state, Workspace<D>& work)
     for (Index a = 0; a < near; ++a) {
       const Index i = work.near_sheet[a];
       sheet_near.list(scene, state, work, i);
-      sheet_near.measure(state, work, i);
+      sheet_near.measure(scene, state, work, i);
       for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
         if (work.link_weight[k] == 0) continue;
         const std::int32_t j = work.neighbors.index[k];
-        if (sheet_near.crosses(scene, work, state.position[i], state.position[j], state.kind[j] == Kind::shell ? j : -1))
+        // Of two fluid particles the one nearer to the crossing finds it, and cuts for both below.
+        const std::size_t count = j >= scene.first_fluid ? sheet_near.near_count : sheet_near.element.size();
+        if (sheet_near.crosses(scene, work, state.position[i], state.position[j], state.kind[j] == Kind::shell ? j : -1, count))
           work.link_weight[k] = 0;
       }
     }
   }
-  // A crossing beside j's end of a link may lie beyond what i sees: cut (i, j) wherever (j, i) is cut.
+  // Cut (i, j) wherever (j, i) is cut.
   std::vector<std::pair<std::int32_t, std::int64_t>> also;
 #pragma omp parallel
   {

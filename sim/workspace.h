@@ -60,6 +60,7 @@ struct Workspace {
   std::vector<std::int32_t> unknown;      // row -> unknown, -1
   std::vector<std::int32_t> unknown_row;  // unknown -> row
   SymmetricMatrix matrix;
+  SymmetricMatrix multigrid_matrix;  // with the leaflets' strongest links; empty without leaflets
   std::vector<double> source, solution;
   Multigrid multigrid;
   ConjugateGradientScratch scratch;
