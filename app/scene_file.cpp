@@ -248,6 +248,7 @@ sim::SchemeSettings read_scheme(const toml::table& table) {
       {"elastic_substep", &S::elastic_substep, {0, 0.5, true, false, "a number above 0, at most 0.5"}},
       {"added_mass", &S::added_mass, {0, 10, false, false, "0 to 10"}},
       {"resolved_mass", &S::resolved_mass, {0, 10, false, false, "0 to 10"}},
+      {"leaflet_relaxation", &S::leaflet_relaxation, {0, 1, false, false, "0 to 1"}},
       {"bending_viscosity", &S::bending_viscosity, not_negative},
       {"film_resistance", &S::film_resistance, not_negative},
       {"elastic_tolerance", &S::elastic_tolerance, {0, 0.1, true, false, "a number above 0, at most 0.1"}}};

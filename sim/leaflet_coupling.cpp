@@ -33,11 +33,13 @@ ShellSubstepReport predict_leaflets(const Scene<D>& scene, const State<D>& state
     external[s] += state.fluid_force[first + s];
     const double thickness = shells.bodies[shells.body[s]].thickness, l0 = scene.lattice.spacing;
     const double local = scene.description.scheme.added_mass * blood_density * work.shell_area[s] * std::max(l0 - thickness, 0.5 * l0);
-    // of the blood farther out a part follows the leaflet at once, at last step's acceleration
-    const double follows = scene.description.scheme.resolved_mass * (shells.mass[s] + local);
+    // Of the blood farther out a part is felt within the sub-steps, beyond last step's acceleration. It must not stand in the step's own
+    // equation: there the difference to last step's acceleration would feed every oscillation, at the rate follows dt w^2 / (2 mass).
+    const double wet = scene.pressure ? 0.5 * (work.wet_share[2 * s] + work.wet_share[2 * s + 1]) : 0.0;
+    const double follows = scene.description.scheme.resolved_mass * local * wet;
     added[s] = local + follows;
-    reference[s] = follows / added[s] * state.fluid_acceleration[first + s];
-    work.shell_normal_mass[s] = shells.mass[s] + (scene.pressure ? added[s] : 0.0);
+    reference[s] = local > 0 ? Vector<D>(follows / added[s] * state.fluid_acceleration[first + s]) : Vector<D>::Zero();
+    work.shell_normal_mass[s] = shells.mass[s] + (scene.pressure ? local : 0.0);
   }
   work.shell_mean_force.resize(n);
   ShellSubstepInput<D> input;
@@ -46,6 +48,7 @@ ShellSubstepReport predict_leaflets(const Scene<D>& scene, const State<D>& state
     input.added_mass = added;
     input.added_normal = work.shell_normal;
     input.reference_acceleration = reference;
+    input.relaxation = scene.description.scheme.leaflet_relaxation * dt;
   }
   input.duration = dt;
   const ShellSubstepReport report = shell_substeps<D>(shells, work.contact ? &*work.contact : nullptr, input, work.shell_position,
@@ -54,9 +57,8 @@ ShellSubstepReport predict_leaflets(const Scene<D>& scene, const State<D>& state
   for (Index s = 0; s < n; ++s) {
     const Vector<D> force = work.shell_mean_force[s] + work.shell_outer_force[s];
     const double along = force.dot(work.shell_normal[s]);
-    const double carried = scene.pressure ? added[s] * reference[s].dot(work.shell_normal[s]) : 0.0;
-    Vector<D> v = state.velocity[first + s] + dt * ((force - along * work.shell_normal[s]) / shells.mass[s] +
-                                                    (along + carried) / work.shell_normal_mass[s] * work.shell_normal[s]);
+    Vector<D> v = state.velocity[first + s] +
+                  dt * ((force - along * work.shell_normal[s]) / shells.mass[s] + along / work.shell_normal_mass[s] * work.shell_normal[s]);
     for (int k = 0; k < D; ++k)
       if (shells.fixed[s] >> k & 1) v[k] = 0;
     work.shell_free_velocity[s] = v;

@@ -171,8 +171,9 @@ struct SchemeSettings {  // every numerical knob; lengths in units of the spacin
       -1;  // C of the dissipation for unresolved scales; 0 = off; -1 = chosen by make_scene: 0.3 with leaflets, else 0.1
   double viscosity_limit = 0;        // Pa s, cap of the rheological viscosity; 0 = chosen by make_scene: 0.1 with leaflets, else 1000
   double added_mass = 2.0;           // factor on the blood's mass within a leaflet's own lattice layer, rho (l0 - h) per area
-  double resolved_mass = 0.3;        // share of (leaflet + layer) mass by which the blood farther out is felt within a step
-  double bending_viscosity = 60;     // m/s: leaflets in blood: the shortest bending wave dies out at the rate of this over l0
+  double resolved_mass = 0.3;        // of the mass of blood in the layer: what the elastic sub-steps feel of the blood farther out
+  double leaflet_relaxation = 0.2;   // of a step: Kelvin-Voigt time of leaflets in blood along their normal; damps what a step can't follow
+  double bending_viscosity = 20;     // m/s: leaflets in blood: the shortest bending wave dies out at the rate of this over l0
   double film_resistance = 3000;     // Pa s/m: of the film of blood between leaflets that lie on each other (contact.h)
   double elastic_substep = 0.35;     // of l0/c; explicit elastic sub-steps; refused above 0.5
   int elastic_explicit_limit = 200;  // solids: more explicit sub-steps than this in a step, and they are advanced implicitly

@@ -105,6 +105,7 @@ struct ShellSubstepInput {
   std::span<const Vector<D>> added_normal;            // N of the added mass (current unit normals); with added_mass
   std::span<const Vector<D>> reference_acceleration;  // a^n, m/s2; with added_mass
   double duration = 0;                                // s
+  double relaxation = 0;                              // s, of the motion along added_normal: forces K (x + relaxation v), Kelvin-Voigt
 };
 struct ShellSubstepReport {
   std::int64_t substeps = 0, limiter_hits = 0;

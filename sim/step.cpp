@@ -135,13 +135,13 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, std:
   if (scene.solids) timed(clocks, Stage::elastic, [&] { report.elastic_substeps = predict_solids(scene, state, work, dt); });
   timed(clocks, Stage::pressure_assembly, [&] { pressure_poisson(scene, state, work, dt); });
   if (scene.shells) {
+    timed(clocks, Stage::leaflet_coupling, [&] { wetted_sides(scene, state, work); });
     timed(clocks, Stage::elastic, [&] {
       const ShellSubstepReport shells = predict_leaflets(scene, state, work, dt);
       report.elastic_substeps += shells.substeps;
       state.ledger.limiter_hits += shells.limiter_hits;
     });
     const StageClock clock(clocks, Stage::leaflet_coupling);
-    wetted_sides(scene, state, work);
     couple_leaflets(scene, state, work, dt);
     remember_sides(scene, state, work);
   }
