@@ -105,7 +105,18 @@ std::vector<ComparedFigure> figures_of(const Beat& beat) {
           {"time spent", "s", {beat.run.wall_seconds()}}};
 }
 
-// Of dry runs: the closed valve at the end.
+bool is_dry(const sim::RunReader& run) { return run.header().valve && run.header().ports.empty(); }
+
+// The closed valve: of a dry run as it is at the end, of a beat the median of its closed phase.
+double when_closed(const sim::RunReader& run, const std::string& column) {
+  const std::vector<double> values = run.column(column);
+  if (values.empty()) return none;
+  if (is_dry(run)) return values.back();
+  const std::optional<ValveMoments> moments = valve_moments(run);
+  return moments ? Beat{run, run.column("time"), *moments}.while_closed(column) : none;
+}
+
+// Where a run among them is dry: the closed valve.
 std::vector<ComparedFigure> closed_figures(const std::vector<const sim::RunReader*>& runs) {
   const std::tuple<const char*, const char*, const char*, double> wanted[] = {{"leaflet_stress_p99", "stress, valve closed", "kPa", 1e-3},
                                                                               {"orifice_area", "orifice left when closed", "cm2", 1e4},
@@ -114,10 +125,7 @@ std::vector<ComparedFigure> closed_figures(const std::vector<const sim::RunReade
   std::vector<ComparedFigure> figures;
   for (const auto& [column, name, units, factor] : wanted) {
     ComparedFigure figure{name, units, {}};
-    for (const sim::RunReader* run : runs) {
-      const std::vector<double> values = run->column(column);
-      figure.values.push_back(values.empty() ? none : factor * values.back());
-    }
+    for (const sim::RunReader* run : runs) figure.values.push_back(factor * when_closed(*run, column));
     figures.push_back(std::move(figure));
   }
   figures.push_back({"time spent", "s", {}});
@@ -151,9 +159,7 @@ double change(const ComparedFigure& figure) { return figure.values.back() - figu
 }  // namespace
 
 std::vector<ComparedFigure> compare_runs(const std::vector<const sim::RunReader*>& runs) {
-  const bool dry =
-      std::all_of(runs.begin(), runs.end(), [](const sim::RunReader* run) { return run->header().valve && run->header().ports.empty(); });
-  if (dry) return closed_figures(runs);
+  if (std::any_of(runs.begin(), runs.end(), [](const sim::RunReader* run) { return is_dry(*run); })) return closed_figures(runs);
   std::vector<Beat> beats;
   for (const sim::RunReader* run : runs)
     if (const std::optional<ValveMoments> moments = valve_moments(*run)) beats.push_back({*run, run->column("time"), *moments});

@@ -24,8 +24,8 @@ struct ComparedFigure {
   std::string name, units;
   std::vector<double> values;  // one a run; NaN where a run lacks it
 };
-// Orifice, opening and closing, stress open and closed, leak, speed, time spent: what the runs' series hold of it. Runs without a valve:
-// the last value of every column in which they differ.
+// Orifice, opening and closing, stress open and closed, leak, speed, time spent: what the runs' series hold of it. Where one of them is a
+// dry preview: the closed valve alone. Runs without a valve: the last value of every column in which they differ.
 std::vector<ComparedFigure> compare_runs(const std::vector<const sim::RunReader*>& runs);
 // The table as text: a heading of `names`, one line a figure, with the change of the last run against the first.
 std::string comparison_text(const std::vector<ComparedFigure>& figures, const std::vector<std::string>& names);

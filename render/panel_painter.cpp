@@ -73,6 +73,22 @@ const ColorScale* scale_of(const Frame& frame, const Style& style) { return styl
 
 std::optional<ClipPlane> clip_of(const Panel& panel, const Style& style) { return style.clipped ? panel.clip : std::nullopt; }
 
+// What a clip plane leaves of segments.
+std::vector<std::array<Eigen::Vector3f, 2>> left_by(const std::optional<ClipPlane>& clip,
+                                                    const std::vector<std::array<Eigen::Vector3f, 2>>& all) {
+  if (!clip) return all;
+  std::vector<std::array<Eigen::Vector3f, 2>> left;
+  for (auto [a, b] : all) {
+    const float over_a = clip->normal.dot(a - clip->point), over_b = clip->normal.dot(b - clip->point);
+    if (over_a > 0 && over_b > 0) continue;
+    const Eigen::Vector3f between = a + over_a / (over_a - over_b) * (b - a);  // used where the signs differ
+    if (over_a > 0) a = between;
+    if (over_b > 0) b = between;
+    left.push_back({a, b});
+  }
+  return left;
+}
+
 Bounds bounds_of(const std::vector<Eigen::Vector3f>& points, float radius) {
   Bounds bounds;
   for (const Eigen::Vector3f& point : points)
@@ -247,7 +263,9 @@ void PanelPainter::Parts::draw_lines(const Frame& frame, const Panel& panel, con
   for (const SurfaceLayer& layer : panel.surfaces) {
     const Surface& surface = frame.surfaces[layer.surface];
     const Color dark = 0.35f * layer.style.color;
-    if (layer.rim) lines.draw(segments(skins.rim(surface, projection.pixels_per_metre), dark), width(2), lift, Depth::hidden, projection);
+    if (layer.rim)
+      lines.draw(segments(left_by(clip_of(panel, layer.style), skins.rim(surface, projection.pixels_per_metre)), dark), width(2), lift,
+                 Depth::hidden, projection);
     if (layer.section && panel.clip) {
       const DrawnMesh& middle = skins.middle(surface, projection.pixels_per_metre);
       const auto cut = section(middle.positions, middle.triangles, *panel.clip);

@@ -52,5 +52,37 @@ TEST(Replay, compares_two_beats_figure_by_figure) {
   std::filesystem::remove_all(folder);
 }
 
+// A dry preview knows the closed valve alone: of the beat beside it the median of its closed phase is compared, and nothing else.
+TEST(Replay, compares_a_dry_preview_with_a_beat_by_the_closed_valve_alone) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "cusp_replay_dry";
+  std::filesystem::create_directories(folder);
+  example::write_valve_run(folder / "beat.h5", 81);
+  sim::RunHeader header;
+  header.title = "dry", header.scheme = "accurate", header.spacing = 1e-3, header.end = 0.01, header.output = 0.01;
+  header.valve = sim::ValveFrame{};
+  header.valve->ventricle_port = header.valve->aorta_port = -1;
+  header.columns = {"time", "orifice_area", "leaflet_stress_p99"}, header.units = {"s", "m2", "Pa"};
+  {
+    sim::RunWriter writer = sim::RunWriter::create(folder / "dry.h5", header);
+    writer.add_row({0, 4e-5, 0}, {});
+    writer.add_row({0.01, 2e-6, 3e5}, {});
+    writer.set_status("finished", 1, 2);
+    writer.finish();
+  }
+  const sim::RunReader beat(folder / "beat.h5"), dry(folder / "dry.h5");
+  const std::vector<ComparedFigure> figures = compare_runs({&beat, &dry});
+  for (const ComparedFigure& figure : figures) {
+    EXPECT_NE(figure.name, "largest orifice");
+    EXPECT_NE(figure.name, "jet speed, largest");
+    if (figure.name == "stress, valve closed") EXPECT_DOUBLE_EQ(figure.values[1], 300);
+    if (figure.name == "orifice left when closed") {
+      EXPECT_DOUBLE_EQ(figure.values[1], 0.02);
+      // 4 cm2 sin^2, from 0.65 s (a quarter after closing at 0.6 s) to 0.8 s: at the middle, 0.725 s, 0.336 cm2
+      EXPECT_NEAR(figure.values[0], 0.336, 0.03);
+    }
+  }
+  std::filesystem::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace app
