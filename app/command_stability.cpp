@@ -24,18 +24,20 @@ struct Cell {
   std::string name, scene, vary, value, expect;
   std::vector<std::string> set, twin_set;  // twin: a second run that has to end alike
   bool fast = false, twin = false, restart = false;
-  double speed = infinite;      // m/s, any particle at any row
-  double end_speed = infinite;  // m/s at the end (rest)
-  double density_error = 0.05;  // rms
-  double penetration = 0.5;     // l0
-  double energy = 0.05;         // growth beyond the work done, share of the energy that went through; infinite: not judged
-  double twin_apart = 1e-6;     // l0, between the runs' last frames
+  double speed = infinite;          // m/s, any particle at any row
+  double end_speed = infinite;      // m/s at the end (rest)
+  double density_error = 0.05;      // rms
+  double penetration = 0.5;         // l0
+  double energy = 0.05;             // growth beyond the work done, share of the energy that went through; infinite: not judged
+  double twin_apart = 1e-6;         // l0, between the runs' last frames
+  double leaflet_speed = infinite;  // m/s, any leaflet particle in the last frame
+  double leak = infinite;           // through the closed valve over the run's second half, share of 70 ml a beat of 0.8 s
 };
 
 Cell read_cell(const toml::table& table, const std::string& path) {
   const TableReader reader(table, path,
                            {"name", "scene", "vary", "value", "expect", "set", "twin", "twin_set", "restart", "fast", "speed", "end_speed",
-                            "density_error", "penetration", "energy", "twin_apart"});
+                            "density_error", "penetration", "energy", "twin_apart", "leaflet_speed", "leak"});
   Cell cell;
   cell.name = reader.text("name"), cell.scene = reader.text("scene"), cell.vary = reader.text("vary"), cell.value = reader.text("value");
   cell.expect = reader.choice("expect", {"holds", "refused"}, "holds");
@@ -43,6 +45,7 @@ Cell read_cell(const toml::table& table, const std::string& path) {
   if (reader.has("twin_set")) cell.twin_set = reader.texts("twin_set");
   cell.twin = reader.flag("twin", reader.has("twin_set")), cell.restart = reader.flag("restart", false);
   cell.fast = reader.flag("fast", false);
+  cell.leaflet_speed = reader.number("leaflet_speed", positive, cell.leaflet_speed), cell.leak = reader.number("leak", positive, cell.leak);
   cell.speed = reader.number("speed", positive, cell.speed), cell.end_speed = reader.number("end_speed", positive, cell.end_speed);
   cell.density_error = reader.number("density_error", positive, cell.density_error);
   cell.penetration = reader.number("penetration", positive, cell.penetration);
@@ -116,6 +119,25 @@ double energy_growth(const Series& series, double rest) {
   return scale > 0 ? growth / scale : 0;
 }
 
+// The fastest leaflet particle of a frame, m/s.
+double leaflet_speed(const sim::RunFrame& frame) {
+  double fastest = 0;
+  for (std::size_t i = 0; i < frame.size(); ++i)
+    if (frame.kind[i] == static_cast<std::uint8_t>(sim::Kind::shell))
+      fastest = std::max(fastest, double(std::hypot(frame.velocity[i][0], frame.velocity[i][1], frame.velocity[i][2])));
+  return fastest;
+}
+
+// What leaks back through a patient's closed valve in the second half of a run, as a share of a stroke of 70 ml, for a beat of 0.8 s.
+double leak(const Series& series) {
+  const auto &time = series.columns.at("time"), &in = series.columns.at("port.aorta.volume"),
+             &out = series.columns.at("port.ventricle.volume");
+  const std::size_t half = time.size() / 2;
+  const double volume = 0.5 * ((in.back() - in[half]) - (out.back() - out[half]));
+  constexpr double beat = 0.8, stroke = 70e-6;  // s, m³
+  return std::abs(volume) / (time.back() - time[half]) * beat / stroke;
+}
+
 bool finite(const sim::RunFrame& frame) {
   for (std::size_t i = 0; i < frame.size(); ++i) {
     for (double x : frame.position[i])
@@ -175,6 +197,14 @@ std::string judge(const Cell& cell, const sim::RunReader& run, json& result) {
   bound("largest speed in m/s", speed, cell.speed);
   bound("speed at the end in m/s", end_speed, cell.end_speed);
   bound("energy growth beyond the work done", growth, cell.energy);
+  if (std::isfinite(cell.leaflet_speed)) {
+    result["leaflet_speed"] = leaflet_speed(run.frame(run.frame_count() - 1));
+    bound("leaflets' speed at the end in m/s", result["leaflet_speed"], cell.leaflet_speed);
+  }
+  if (std::isfinite(cell.leak)) {
+    result["leak"] = leak(series);
+    bound("leak as a share of a stroke", result["leak"], cell.leak);
+  }
   return wrong;
 }
 
@@ -235,7 +265,7 @@ std::string table_row(const json& one) {
          upper_fail(one["status"]) + " | " + value("steps", 1, "") + " | " + value("time", 1, "") + " | " + value("refused_steps", 1, "") +
          " | " + value("particles_lost", 1, "") + " | " + value("penetration_l0", 1, "") + " | " + value("density_error", 100, " %") +
          " | " + value("largest_speed", 1, "") + " | " + value("end_speed", 1, "") + " | " + growth + " | " + apart_text + " | " + cause +
-         " |\n";
+         " | " + value("seconds", 1, "") + " |\n";
 }
 
 void write_report(const json& all, const std::filesystem::path& folder) {
@@ -254,10 +284,10 @@ void write_report(const json& all, const std::filesystem::path& folder) {
         "speed and speed at the end (m/s); largest "
         "growth\n"
      << "of energy beyond the work done (share of the energy there was, at least that of all blood at 1 cm/s); distance of the last frame "
-        "from a twin run's (l0).\n\n"
+        "from a twin run's (l0); wall time (s).\n\n"
      << "| cell | varied | value | result | steps | time | refused | lost | penetration | density error | speed | end speed | energy | "
-        "twin | cause "
-        "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+        "twin | cause | wall s "
+        "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const json& one : all["cases"]) md << table_row(one);
 }
 
