@@ -88,7 +88,7 @@ BodyParticles from_set(const geometry::ParticleSet& set, const BodySpec& body, i
   BodyParticles result;
   result.source = source, result.name = body.name, result.kind = body.kind;
   result.position = set.position, result.volume = set.volume, result.normal = set.normal, result.depth = set.depth;
-  result.surface_area = set.surface_area;
+  result.surface_area = set.surface_area, result.surface = set.surface;
   if (body.kind == sim::Kind::elastic) result.fibre.assign(set.size(), Eigen::Vector3d::UnitX());
   return result;
 }

@@ -65,6 +65,7 @@ struct Builder {
       if (fibres) fibre = reduced<D>(spec.fibre_direction ? *spec.fibre_direction : part.fibre[i]);
       rows.fibre.push_back(fibre);
     }
+    if (part.kind == sim::Kind::elastic) add_surface(part);
     rows.clamp_offset.resize(rows.size(), sim::Vector<D>::Zero());
     rows.clamp_axes.resize(rows.size(), 0);
     for (const FixedSpec& fixed : spec.fixed)
@@ -76,6 +77,20 @@ struct Builder {
       for (std::int64_t row : rows_in_region(stiffness.region, part, D, scene.spacing))
         rows.stiffness_scale[body.first + row] *= stiffness.scale;
     if (part.kind == sim::Kind::shell) add_mesh(index);
+  }
+
+  // Elastic rows come first, so that the lists of pieces stay aligned with them.
+  void add_surface(const BodyParticles& part) {
+    sim::InitialParticles<D>& rows = description().particles;
+    if (rows.surface_begin.empty()) rows.surface_begin.push_back(0);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      for (; next < part.surface.size() && part.surface[next].particle == i; ++next) {
+        rows.piece_area.push_back(reduced<D>(part.surface[next].area));
+        rows.piece_offset.push_back(reduced<D>(part.surface[next].offset));
+      }
+      rows.surface_begin.push_back(static_cast<std::int64_t>(rows.piece_area.size()));
+    }
   }
 
   // Particles inside a fixed region are held; those outside but next to its face learn where the face is, so that the clamp

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/scene_file.h"
+#include "geometry/surface_shares.h"
 #include "geometry/triangle_mesh.h"
 
 namespace app {
@@ -18,6 +19,7 @@ struct BodyParticles {
   double thickness = 0;  // m, shells
   std::vector<Eigen::Vector3d> position, normal, surface_area, fibre;
   std::vector<double> volume, depth;
+  std::vector<geometry::SurfaceShare> surface;        // solids off the lattice (geometry/place_particles.h)
   std::vector<std::uint8_t> held;                     // 1: attached to the wall by construction (leaflets)
   std::vector<std::array<std::int32_t, 3>> elements;  // shells: triangles; in 2-D the first two make a segment
   std::size_t size() const { return position.size(); }

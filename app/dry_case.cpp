@@ -39,6 +39,7 @@ void keep_rows(sim::SceneDescription<3>& description, const std::vector<std::siz
     keep(*vectors, kept);
   keep(rows.kind, kept), keep(rows.body, kept), keep(rows.volume, kept), keep(rows.depth, kept), keep(rows.fixed, kept);
   keep(rows.stiffness_scale, kept), keep(rows.clamp_axes, kept);
+  rows.surface_begin.clear(), rows.piece_area.clear(), rows.piece_offset.clear();  // solids are not kept
   for (std::size_t b = 0; b < description.bodies.size(); ++b) {
     sim::Body& body = description.bodies[b];
     body.first = std::find(rows.body.begin(), rows.body.end(), static_cast<std::int32_t>(b)) - rows.body.begin();

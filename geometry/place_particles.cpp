@@ -7,7 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "geometry/iso_surface.h"
+#include "geometry/cell_volumes.h"
 #include "geometry/relax_particles.h"
 #include "geometry/share_cells.h"
 #include "geometry/wall_surface.h"
@@ -212,22 +212,6 @@ void add_face_areas(ParticleSet& set, const Draft& draft, const SharedCells& cel
   }
 }
 
-// The true surface's elements, each to the nearest particle.
-void add_true_areas(ParticleSet& set, const Shape& shape, const PlacementOptions& options) {
-  const std::vector<SurfaceElement> elements = surface_elements(shape, options.dimension, 0.5 * options.spacing);
-  const PointGrid grid(set.position, 2.5 * options.spacing);
-  for (const SurfaceElement& element : elements) {
-    double best = 1e300;
-    std::size_t nearest = 0;
-    grid.for_each_near(element.center, [&](std::size_t i, const Vector3d&, double d2) {
-      if (d2 >= best) return;
-      best = d2;
-      nearest = i;
-    });
-    set.surface_area[nearest] += element.area;
-  }
-}
-
 ParticleSet place_elastic(const std::vector<PlacedBody>& all, int which, const PlacementOptions& options, std::size_t& relaxed) {
   const std::vector<PlacedBody> bodies{all[which]};
   PlacementOptions alone = options;
@@ -250,11 +234,15 @@ ParticleSet place_elastic(const std::vector<PlacedBody>& all, int which, const P
     own.body.push_back(0);
   }
   if (set.size() == 0) return set;
-  scale_volumes(set, volume);
   if (moving > 0)
-    add_true_areas(set, bodies[0].shape, options);
-  else
+    set.volume = cell_volumes(bodies[0].shape, set.position, set.depth, options.dimension, options.spacing, cells.lattice.periodic);
+  scale_volumes(set, volume);
+  if (moving > 0) {
+    set.surface = surface_shares(bodies[0].shape, set.position, options.dimension, options.spacing, volume);
+    for (const SurfaceShare& share : set.surface) set.surface_area[share.particle] += share.area;
+  } else {
     add_face_areas(set, own, cells, options.dimension);
+  }
   relaxed += moving;
   return set;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/shape.h"
+#include "geometry/surface_shares.h"
 
 namespace geometry {
 
@@ -28,6 +29,7 @@ struct ParticleSet {
   std::vector<Eigen::Vector3d> normal;    // wall: unit, from the wall to where fluid can be, at the nearest exposed surface point; else 0
   std::vector<double> depth;              // m, >= 0; wall: below that point; elastic: below the body's surface; fluid: 0
   std::vector<Eigen::Vector3d> surface_area;  // m²; elastic: outward vector area of the body's surface this particle carries; sums to 0
+  std::vector<SurfaceShare> surface;  // elastic, where particles were moved off the lattice: the surface in shares, particle by particle
   std::size_t size() const { return position.size(); }
 };
 

@@ -22,6 +22,7 @@ struct TimeTable {
   std::vector<double> value;
   bool repeat = true;
   double at(double t) const;
+  double integral(double t) const;  // of the value from time 0 to t >= 0, exact
 };
 TimeTable constant_table(double value);
 
@@ -80,9 +81,13 @@ struct InitialParticles {
   std::vector<double> depth;  // wall, elastic: distance of the centre below the body's true surface, >= 0; else 0
   std::vector<Vector<D>>
       surface_area;  // elastic: outward area vector of the body's surface that this particle carries (0 inside), m² (2-D: m)
-  std::vector<std::uint8_t> fixed;      // bit k set: displacement along axis k is held at 0
-  std::vector<double> stiffness_scale;  // elastic, shell: factor on the body's stiffness (calcified spots); else 1
-  std::vector<Vector<D>> fibre;         // elastic, shell with fibre_reinforced: unit fibre direction, else 0
+  // Optional (empty: a lattice cell's open faces, else one piece `depth` away along the normal): the surface pieces that an elastic
+  // particle carries, particle by particle; row i has pieces [surface_begin[i], surface_begin[i + 1]). Where faces meet it has one on each.
+  std::vector<std::int64_t> surface_begin;
+  std::vector<Vector<D>> piece_area, piece_offset;  // outward, m² (2-D: m); from the particle's centre, m
+  std::vector<std::uint8_t> fixed;                  // bit k set: displacement along axis k is held at 0
+  std::vector<double> stiffness_scale;              // elastic, shell: factor on the body's stiffness (calcified spots); else 1
+  std::vector<Vector<D>> fibre;                     // elastic, shell with fibre_reinforced: unit fibre direction, else 0
   // Optional (empty = half-way between fixed and free particles): for elastic particles outside a fixed region but within 1 l0 of its face,
   // the vector to the nearest point of that face, m, and the axes held there (bits as in `fixed`; 0 = no face near). The region may also
   // merely touch the body from outside. The clamp then acts at the face exactly, wherever it cuts the lattice.

@@ -55,6 +55,10 @@ void copy_rows(const SceneDescription<D>& scene, SolidElasticity<D>& solid) {
   optional(particles.body, solid.body, std::int32_t{0});
   optional(particles.surface_area, solid.surface_area, Vector<D>(Vector<D>::Zero()));
   optional(particles.depth, solid.depth, 0.0);
+  if (particles.surface_begin.size() > n) {
+    solid.surface_begin.assign(particles.surface_begin.begin(), particles.surface_begin.begin() + static_cast<std::ptrdiff_t>(n) + 1);
+    solid.piece_area = particles.piece_area, solid.piece_offset = particles.piece_offset;
+  }
   const HeldNeighbors<D> held(scene, n);
   for (std::size_t i = 0; i < n; ++i) {
     const Body& body = scene.bodies[solid.body[i]];
@@ -74,6 +78,8 @@ void copy_rows(const SceneDescription<D>& scene, SolidElasticity<D>& solid) {
       const double part = std::clamp(particles.clamp_offset[i].norm() / scene.spacing + 0.5, 0.5, 1.5);
       solid.volume[i] *= part;
       solid.surface_area[i] *= part;
+      if (!solid.surface_begin.empty())
+        for (std::int64_t p = solid.surface_begin[i]; p < solid.surface_begin[i + 1]; ++p) solid.piece_area[p] *= part;
     }
     solid.damping.push_back(body.elastic.damping);
     solid.wave_speed.push_back(wave_speed<D>(solid.law[i], body.elastic.density));

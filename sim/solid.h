@@ -46,8 +46,10 @@ struct SolidElasticity {
   std::vector<std::uint8_t> fixed;   // bit k: u_k is held at 0
   std::vector<std::int32_t> body;
   std::vector<ElasticLawPoint<D>> law;
-  std::vector<Vector<D>> surface_area;  // m^2, outward
-  std::vector<double> depth;            // m below the surface
+  std::vector<Vector<D>> surface_area;      // m^2, outward
+  std::vector<double> depth;                // m below the surface
+  std::vector<std::int64_t> surface_begin;  // as in InitialParticles; empty: of lattice cells
+  std::vector<Vector<D>> piece_area, piece_offset;
 
   std::vector<SolidFit> fits;           // grouped by row
   std::vector<std::int64_t> fit_begin;  // n + 1: fits of row i are [fit_begin[i], fit_begin[i+1])

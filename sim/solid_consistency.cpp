@@ -22,9 +22,9 @@ std::vector<Vector<D>> mismatch(const SolidElasticity<D>& solid, int axis) {
     for (std::int64_t f = solid.fit_begin[i]; f < solid.fit_begin[i + 1]; ++f) {
       const SolidFit& fit = solid.fits[f];
       if (!(fit.components >> axis & 1)) continue;
-      std::array<bool, D> held{};
+      std::array<bool, SurfacePieces<D>::most> held{};
       for (int p = 0; p < pieces.count; ++p) {
-        held[p] = held_there(solid, fit, pieces.piece[p].offset);
+        held[p] = held_there(solid, fit, pieces.piece[p]);
         if (!held[p]) sum[i] += pieces.piece[p].area;
       }
       for (std::int64_t l = fit.first; l < fit.first + fit.count; ++l) {

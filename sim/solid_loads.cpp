@@ -9,18 +9,18 @@ namespace {
 
 // Pressure on a piece of the boundary; components that a clamp holds there go into its reaction.
 template <int D>
-void push_on_piece(const SolidElasticity<D>& solid, std::size_t i, const Vector<D>& offset, Vector<D> f, std::span<Vector<D>> force) {
+void push_on_piece(const SolidElasticity<D>& solid, std::size_t i, const SurfacePiece<D>& piece, Vector<D> f, std::span<Vector<D>> force) {
   for (std::int64_t fit = solid.fit_begin[i]; fit < solid.fit_begin[i + 1]; ++fit)
     for (int k = 0; k < D; ++k)
-      if ((solid.fits[fit].components >> k & 1) && held_there(solid, solid.fits[fit], offset)) f(k) = 0;
-  add_force_at<D>(solid, i, offset, f, force);
+      if ((solid.fits[fit].components >> k & 1) && held_there(solid, solid.fits[fit], piece)) f(k) = 0;
+  add_force_at<D>(solid, i, piece.offset, f, force);
 }
 
 template <int D>
 void add_pressure(const SolidElasticity<D>& solid, std::size_t i, double pressure, const SolidWork<D>& work, std::span<Vector<D>> force) {
   for (const SurfacePiece<D>& piece : surface_pieces<D>(solid, i)) {
     const Tensor<D> f = deformation_gradient<D>(work.derivatives[i], piece.offset);
-    push_on_piece<D>(solid, i, piece.offset, -pressure * (cofactor<D>(f) * piece.area), force);
+    push_on_piece<D>(solid, i, piece, -pressure * (cofactor<D>(f) * piece.area), force);
   }
 }
 
@@ -32,7 +32,7 @@ void add_pressure_on_part(const SolidElasticity<D>& solid, const Load<D>& load, 
   const auto i = static_cast<std::size_t>(load.rows[r]);
   const Eigen::Map<const Vector<D>> area(load.share.data() + 2 * D * r), offset(load.share.data() + 2 * D * r + D);
   const Tensor<D> f = deformation_gradient<D>(work.derivatives[i], offset);
-  push_on_piece<D>(solid, i, offset, -pressure * (cofactor<D>(f) * area), force);
+  push_on_piece<D>(solid, i, {offset, area}, -pressure * (cofactor<D>(f) * area), force);
 }
 
 }  // namespace

@@ -5,24 +5,14 @@
 
 namespace sim {
 
-namespace {
-
-// Offset of the nearest clamp point within 0.75 l0 of a row, 0 where there is none.
-template <int D>
-Vector<D> nearest_clamp_face(const SolidElasticity<D>& solid, std::size_t row) {
-  Vector<D> face = Vector<D>::Zero();
-  double nearest = 0.75 * solid.spacing;
-  for (std::int64_t fit = solid.fit_begin[row]; fit < solid.fit_begin[row + 1]; ++fit)
-    for (std::int64_t l = solid.fits[fit].first; l < solid.fits[fit].first + solid.fits[fit].count; ++l)
-      if (solid.neighbor[l] < 0 && solid.offset[l].norm() < nearest) nearest = solid.offset[l].norm(), face = solid.offset[l];
-  return face;
-}
-
-}  // namespace
-
 template <int D>
 SurfacePieces<D> surface_pieces(const SolidElasticity<D>& solid, std::size_t row) {
   SurfacePieces<D> pieces;
+  if (!solid.surface_begin.empty() && solid.surface_begin[row + 1] > solid.surface_begin[row]) {
+    for (std::int64_t p = solid.surface_begin[row]; p < solid.surface_begin[row + 1] && pieces.count < pieces.most; ++p)
+      pieces.piece[pieces.count++] = {solid.piece_offset[p], solid.piece_area[p]};
+    return pieces;
+  }
   const Vector<D>& area = solid.surface_area[row];
   const double size = area.norm(), depth = solid.depth[row];
   if (size < 1e-9 * std::pow(solid.spacing, D - 1)) return pieces;
@@ -37,17 +27,6 @@ SurfacePieces<D> surface_pieces(const SolidElasticity<D>& solid, std::size_t row
       piece.offset = std::copysign(solid.volume[row] / (2 * std::abs(area(k))), area(k)) * Vector<D>::Unit(k);
       piece.area = area(k) * Vector<D>::Unit(k);
     }
-    return pieces;
-  }
-  // Where a curved body ends at a clamp's face its particle carries a part of that face and a part of the surface that meets it: split
-  // along the face's normal, which the links to the clamp's points give.
-  const Vector<D> face = nearest_clamp_face(solid, row);
-  const double across = face.squaredNorm() > 0 ? area.dot(face.normalized()) : 0;
-  const Vector<D> rest = area - across * face.normalized();
-  if (across > 0.3 * size && rest.norm() > 0.3 * size) {
-    pieces.piece[0] = {face, across * face.normalized()};
-    pieces.piece[1] = {rest * (depth / rest.norm()), rest};
-    pieces.count = 2;
     return pieces;
   }
   pieces.piece[0] = {area * (depth / size), area};

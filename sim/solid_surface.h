@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <span>
 
 #include "sim/solid.h"
@@ -16,13 +17,15 @@ struct SurfacePiece {
 };
 template <int D>
 struct SurfacePieces {
-  std::array<SurfacePiece<D>, D> piece;
+  static constexpr int most = 6;
+  std::array<SurfacePiece<D>, most> piece;
   int count = 0;
   const SurfacePiece<D>* begin() const { return piece.data(); }
   const SurfacePiece<D>* end() const { return piece.data() + count; }
 };
 
-// A cell of a lattice has a piece for each of its open faces (a corner has D); any other particle one piece, `depth` away along the normal.
+// The pieces given with the particles; without them a cell of a lattice has a piece for each of its open faces (a corner has D), any other
+// particle one, `depth` away along the normal.
 template <int D>
 SurfacePieces<D> surface_pieces(const SolidElasticity<D>& solid, std::size_t row);
 
@@ -35,12 +38,16 @@ template <int D>
 void add_force_at(const SolidElasticity<D>& solid, std::size_t row, const Vector<D>& offset, const Vector<D>& f,
                   std::span<Vector<D>> force);
 
-// Whether a clamp's point holds the fit's components at `offset` from its particle (within 0.3 l0): the displacement is 0 there, and what
-// pushes is taken up by the reaction.
+// Whether a clamp's point holds the fit's components on a piece of the surface: within 0.3 l0 of its plane and 0.6 l0 of its middle. The
+// displacement is 0 there, and what pushes is taken up by the reaction.
 template <int D>
-bool held_there(const SolidElasticity<D>& solid, const SolidFit& fit, const Vector<D>& offset) {
-  for (std::int64_t l = fit.first; l < fit.first + fit.count; ++l)
-    if (solid.neighbor[l] < 0 && (solid.offset[l] - offset).norm() < 0.3 * solid.spacing) return true;
+bool held_there(const SolidElasticity<D>& solid, const SolidFit& fit, const SurfacePiece<D>& piece) {
+  const Vector<D> normal = piece.area.normalized();
+  for (std::int64_t l = fit.first; l < fit.first + fit.count; ++l) {
+    if (solid.neighbor[l] >= 0) continue;
+    const Vector<D> away = solid.offset[l] - piece.offset;
+    if (std::abs(away.dot(normal)) < 0.3 * solid.spacing && away.norm() < 0.6 * solid.spacing) return true;
+  }
   return false;
 }
 

@@ -207,4 +207,43 @@ at = [0, 0.005]
   }
 }
 
+// Lame's thick ring. At six layers through the wall; what follows the ring's curves must not bend it into an oval, its softest mode.
+TEST(UserScene, QuarterOfAPressurisedRingStaysRound) {
+  const SceneRun run(R"(dimension = 2
+spacing = 5e-4
+[time]
+mode = "static"
+[[body]]
+name = "ring"
+kind = "elastic"
+shape = { type = "sphere", center = [0, 0], radius = 13e-3, subtract = [ { type = "sphere", center = [0, 0], radius = 10e-3 } ], intersect = [ { type = "box", min = [0, 0], max = [14e-3, 14e-3] } ] }
+material = { law = "linear", youngs_modulus = 1e6, poisson_ratio = 0.3 }
+fixed = [ { type = "box", min = [-5e-4, 0], max = [0, 14e-3], directions = ["x"] }, { type = "box", min = [0, -5e-4], max = [14e-3, 0], directions = ["y"] } ]
+[[load]]
+body = "ring"
+region = { type = "sphere", center = [0, 0], radius = 10.3e-3 }
+pressure = 16
+[[probe]]
+name = "right"
+quantity = "displacement"
+body = "ring"
+at = [0.01, 0]
+[[probe]]
+name = "top"
+quantity = "displacement"
+body = "ring"
+at = [0, 0.01]
+[[probe]]
+name = "inner"
+quantity = "stress"
+body = "ring"
+at = [0.00707106781, 0.00707106781]
+)");
+  const double radial = 1.41421356 * 4.454978e-07;  // plane strain
+  EXPECT_NEAR(run.last("right.x"), radial, 0.01 * radial);
+  EXPECT_NEAR(run.last("top.y"), radial, 0.01 * radial);
+  EXPECT_NEAR(run.last("inner.principal1"), 62.3768, 0.05 * 62.3768);
+  EXPECT_NEAR(run.last("inner.von_mises"), 68.5071, 0.05 * 68.5071);
+}
+
 }  // namespace

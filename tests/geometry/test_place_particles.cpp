@@ -201,6 +201,49 @@ TEST(PlaceParticles, ElasticDiscFollowsItsCircle) {
   EXPECT_NEAR(outward, 2 * std::numbers::pi * 0.1 * 0.095, 0.02 * 2 * std::numbers::pi * 0.1 * 0.095);
 }
 
+TEST(PlaceParticles, SharesOfACurvedSurfaceCloseAndKeepFacesApart) {
+  // A quarter of a ring: each particle in one of its four corners has a share of the ring's face and one of the end.
+  const double inner = 0.2, outer = 0.26;
+  Shape ring = sphere_shape({0, 0, 0}, outer);
+  ring.subtract.push_back(sphere_shape({0, 0, 0}, inner));
+  ring.intersect.push_back(box_shape({0, 0, 0}, {0.3, 0.3, 0}));
+  const ParticleSet set = place_particles({{"ring", Matter::elastic, ring}}, plane(0.01)).bodies[0];
+  Vector3d sum = Vector3d::Zero(), largest = Vector3d::Zero();
+  double moment = 0, ends = 0;
+  for (const SurfaceShare& share : set.surface) {
+    sum += share.area;
+    moment += share.area.dot(set.position[share.particle] + share.offset);
+    const Vector3d at = set.position[share.particle] + share.offset;
+    if (std::min(at.x(), at.y()) < 1e-3) {
+      ends += share.area.norm();
+      EXPECT_GT(-share.area.minCoeff() / share.area.norm(), 0.98);  // faces along an axis
+    } else {
+      EXPECT_GT(std::abs(share.area.dot(at)) / (share.area.norm() * at.norm()), 0.99);  // faces along the radius
+    }
+  }
+  EXPECT_NEAR(sum.norm(), 0, 1e-12);
+  EXPECT_NEAR(moment, 2 * total(set.volume), 1e-9);
+  EXPECT_NEAR(ends, 2 * (outer - inner), 0.02 * (outer - inner));
+}
+
+TEST(PlaceParticles, CellsOfACurvedBodyAddUpToItsMomentsSectorBySector) {
+  // With equal volumes the middle of a sector of this ring lies up to 0.1 spacings beside the ring's own.
+  const double inner = 0.2, outer = 0.26, spacing = 0.01;
+  Shape ring = sphere_shape({0, 0, 0}, outer);
+  ring.subtract.push_back(sphere_shape({0, 0, 0}, inner));
+  ring.intersect.push_back(box_shape({0, 0, 0}, {0.3, 0.3, 0}));
+  const ParticleSet set = place_particles({{"ring", Matter::elastic, ring}}, plane(spacing)).bodies[0];
+  double second = 0;  // harmonic of the first moment about the ring's middle radius that bends it into an oval
+  const double middle = 2.0 / 3 * (std::pow(outer, 3) - std::pow(inner, 3)) / (outer * outer - inner * inner);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const Vector3d& x = set.position[i];
+    second += set.volume[i] * (x.norm() - middle) * std::cos(2 * std::atan2(x.y(), x.x()));
+  }
+  EXPECT_NEAR(second, 0, 0.005 * spacing * total(set.volume));
+  EXPECT_NEAR(total(set.volume), std::numbers::pi / 4 * (outer * outer - inner * inner), 1e-6);
+  for (double volume : set.volume) EXPECT_NEAR(volume / (spacing * spacing), 1, 0.35);
+}
+
 TEST(PlaceParticles, BloodInAPipeMeetsTheWallEvenly) {
   PlacementOptions options;
   options.spacing = 0.05;
