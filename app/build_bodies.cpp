@@ -72,12 +72,17 @@ void check_thin_box(const SceneFile& scene, const BodySpec& body, int thin) {
            "a spacing of " + count_text(scene.spacing * std::pow(total / allowed, 1.0 / (scene.dimension - 1)) * 1.01) + " would fit");
 }
 
+// A sheet's faces lie half its thickness beside its particles: neither may lie in another solid. (Blood is cut out around particles.)
 void check_shell_overlap(const SceneFile& scene, const BodyParticles& shell, const std::vector<geometry::PlacedBody>& placed) {
   for (const geometry::PlacedBody& other : placed)
-    for (const Eigen::Vector3d& x : shell.position)
-      if (geometry::signed_distance(other.shape, x, scene.dimension) < -0.02 * scene.spacing)
-        refuse(scene.bodies[shell.source].shape.spot, "overlaps body \"" + other.name + "\" at " + point_text(x, scene.dimension),
-               "subtract one from the other");
+    for (std::size_t k = 0; k < shell.size(); ++k)
+      for (const double side : {-0.5, 0.0, 0.5}) {
+        if (side != 0 && other.matter != geometry::Matter::elastic) continue;
+        const Eigen::Vector3d x = shell.position[k] + side * shell.thickness * shell.normal[k];
+        if (geometry::signed_distance(other.shape, x, scene.dimension) < -0.02 * scene.spacing)
+          refuse(scene.bodies[shell.source].shape.spot, "overlaps body \"" + other.name + "\" at " + point_text(x, scene.dimension),
+                 "subtract one from the other");
+      }
 }
 
 geometry::Matter matter_of(sim::Kind kind) {
