@@ -68,7 +68,10 @@ std::vector<Variant> variants_of(const Options& options) {
 void side_by_side(const Options& options, const std::vector<Variant>& variants, bool with_old) {
   MovieJob job;
   if (with_old) job.runs.emplace_back(options.run), job.labels.emplace_back("before");
-  for (const Variant& variant : variants) job.runs.push_back(variant.output), job.labels.push_back(variant.name);
+  for (const Variant& variant : variants) {
+    job.runs.push_back(variant.output);
+    if (with_old) job.labels.push_back(variant.name);  // without it runs are told apart by what differs
+  }
   job.output = options.movie;
   job.difference = job.runs.size() == 2;
   job.stop = &stop_on_signal();
