@@ -136,6 +136,7 @@ std::vector<PlannedRun> ladder_runs(const SceneFile& scene, const std::vector<do
 
 std::vector<PlannedRun> jitter_runs(const SceneFile& scene, double spacing, int seeds) {
   std::vector<PlannedRun> runs;
+  if (scene.start.jitter > 0) return runs;  // the scene is jittered already
   for (int seed = 1; seed <= seeds; ++seed) {
     PlannedRun run = run_at(spacing);
     run.curve = "seed", run.value = std::to_string(seed);

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "app/case_parts.h"
+#include "app/jitter.h"
 #include "app/loaded_surface.h"
 #include "app/region_rows.h"
 #include "app/to_geometry.h"
@@ -301,6 +302,7 @@ struct Builder {
   }
 
   void build() {
+    jitter_particles(parts, scene.start, D, scene.spacing);
     description().title = scene.title, description().spacing = scene.spacing;
     description().domain.present = scene.domain.present;
     description().domain.min = reduced<D>(scene.domain.min), description().domain.max = reduced<D>(scene.domain.max);

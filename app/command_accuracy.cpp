@@ -17,7 +17,7 @@ namespace {
 struct Options {
   std::string scene, output, budget, clock = "wall", knobs, docs;
   std::vector<std::string> vary, settings;
-  int jobs = 1, threads = 1, repeats = 3, seeds = 0;
+  int jobs = 1, threads = 1, repeats = 3, seeds = 5;
   bool quiet = false, json = false, store = false, builtin = false;
 };
 

@@ -9,21 +9,16 @@
 #include <sstream>
 
 #include "app/run_case.h"
+#include "app/split_mix.h"
 #include "sim/step.h"
 
 namespace app {
 namespace {
 
-// splitmix64 (Steele, Lea & Flood 2014): the standard library's distributions differ between machines.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15ull + 1) {}
-  double uniform() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) / 9007199254740992.0;
-  }
+  double uniform() { return uniform_of(state_ += 0x9e3779b97f4a7c15ull); }
   bool chance(double p) { return uniform() < p; }
   double within(double low, double high) { return low + (high - low) * uniform(); }
   double decades(double low, double high) { return std::exp(within(std::log(low), std::log(high))); }

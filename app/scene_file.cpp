@@ -84,6 +84,13 @@ void read_limits(const TableReader& top, SceneFile& scene) {
   scene.limits.density_error = reader.number("density_error", not_negative, scene.limits.density_error);
 }
 
+void read_start(const TableReader& top, SceneFile& scene) {
+  if (!top.has("start")) return;
+  const TableReader reader(top.table("start"), "start", {"jitter", "seed"});
+  scene.start.jitter = reader.number("jitter", {0, 0.3, false, false, "0 to 0.3 spacings"}, 0);
+  scene.start.seed = static_cast<std::uint64_t>(reader.integer("seed", {0, 1e15, false, false, "a whole number from 0"}, 1));
+}
+
 void read_lists(const TableReader& top, SceneContext& context, SceneFile& scene) {
   refuse_twins(top, "body", context.body_names);
   refuse_twins(top, "port", context.port_names);
@@ -108,7 +115,7 @@ void read_lists(const TableReader& top, SceneContext& context, SceneFile& scene)
 SceneFile read_table(const toml::table& table, const std::filesystem::path& path, const SceneContext& start) {
   const TableReader top(table, "",
                         {"title", "dimension", "spacing", "domain", "time", "scheme", "gravity", "body", "load", "port", "probe",
-                         "reference", "patient", "limits", "valve"});
+                         "reference", "patient", "limits", "valve", "start"});
   SceneFile scene;
   scene.path = path;
   scene.title = top.text("title", path.stem().string());
@@ -132,6 +139,7 @@ SceneFile read_table(const toml::table& table, const std::filesystem::path& path
     if (scene.gravity->norm() == 0) scene.gravity.reset();
   }
   read_limits(top, scene);
+  read_start(top, scene);
   context.body_names = names_in(table, "body");
   context.port_names = names_in(table, "port");
   context.probe_names = names_in(table, "probe");

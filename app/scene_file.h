@@ -132,6 +132,12 @@ struct ValveSpec {
   int ventricle_port = -1, aorta_port = -1;
 };
 
+// Particles moved from their lattice at the start (jitter.h).
+struct StartSpec {
+  double jitter = 0;  // spacings
+  std::uint64_t seed = 1;
+};
+
 struct SceneFile {
   std::filesystem::path path;         // as given; error messages and relative paths
   std::string text;                   // as read
@@ -144,6 +150,7 @@ struct SceneFile {
   sim::TimeSettings time;
   sim::SchemeSettings scheme;
   sim::Limits limits;
+  StartSpec start;
   std::optional<Eigen::Vector3d> gravity;
   std::vector<BodySpec> bodies;
   std::vector<LoadSpec> loads;

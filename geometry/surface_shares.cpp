@@ -53,6 +53,11 @@ std::vector<Group> facing_groups(const std::vector<SurfaceElement>& elements, st
     groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(g));
     g = 0;
   }
+  while (groups.size() > most_shares) {
+    const auto smallest = std::ranges::min_element(groups, {}, [](const Group& group) { return group.area.squaredNorm(); });
+    join(*closest(smallest->area, &*smallest).first, smallest->area, smallest->element);
+    groups.erase(smallest);
+  }
   return groups;
 }
 

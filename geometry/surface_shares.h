@@ -16,6 +16,9 @@ struct SurfaceShare {
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  // m, from the particle's centre to where the share acts: sum (c - x) (a . A) / A²
 };
 
+// As many faces as a cell has: of a particle with more the smallest join those nearest in direction.
+inline constexpr std::size_t most_shares = 6;
+
 // The shares of all of the surface, particle by particle: each element goes to the nearest particle, elements whose normals differ by less
 // than 30 degrees form a share. The areas sum to 0; the offsets are moved along the normals, by the same length everywhere, so that the
 // divergence theorem gives `volume`, sum A . (x + offset) = D V (0: they stay). With `inside`, of each share only the part whose elements

@@ -10,11 +10,10 @@
 // What x lags behind the velocity's integral is dt²/2 times the change of acceleration at most.
 // Within the sub-steps a part of the blood farther out (scheme.resolved_mass) is felt too, beyond its last acceleration. It must not stand
 // in the equation above: m a + m_r (a - a^(n-1)) = F feeds every wave at the rate m_r dt w²/(2 m), which made closed leaflets flutter.
-// Elastic forces are taken at x + tau v along the normal, tau = scheme.leaflet_relaxation dt at most (Kelvin-Voigt): with tau = 0.1 to 0.2
-// dt and m_r = 0.2 m the amplitude of a wave of frequency w against which the blood has the added mass m_a = 0 to 10 m is multiplied by
-// less than 1 in a step for all w dt from 0.03 to 12 (by 1.005 at m_a = 0, tau = 0.1 dt, w dt = 2); without it by up to 1.3. Eliminating
-// v_b adds sum_b A²/m g g^T to the pressure matrix, g = (s w_i): symmetric and positive, so force and displaced volume are each other's
-// adjoint and the leaflet's real mass stabilises the coupling at any density ratio.
+// Elastic forces are taken at x + tau v along the normal, tau = scheme.leaflet_relaxation dt at most (Kelvin-Voigt): that damps the waves
+// with w dt beyond about 2, which sub-steps and step see differently.
+// Eliminating v_b adds sum_b A²/m g g^T to the pressure matrix, g = (s w_i): symmetric and positive, so force and displaced volume are each
+// other's adjoint and the leaflet's real mass stabilises the coupling at any density ratio.
 #pragma once
 
 #include "sim/scene.h"

@@ -11,6 +11,7 @@
 #include "sim/solid_consistency.h"
 #include "sim/solid_fit.h"
 #include "sim/solid_neighbors.h"
+#include "sim/solid_surface.h"
 
 namespace sim {
 
@@ -56,6 +57,9 @@ void copy_rows(const SceneDescription<D>& scene, SolidElasticity<D>& solid) {
   optional(particles.surface_area, solid.surface_area, Vector<D>(Vector<D>::Zero()));
   optional(particles.depth, solid.depth, 0.0);
   if (particles.surface_begin.size() > n) {
+    for (std::size_t i = 0; i < n; ++i)
+      if (particles.surface_begin[i + 1] - particles.surface_begin[i] > SurfacePieces<D>::most)
+        throw std::invalid_argument("solid: particle " + std::to_string(i) + " has more pieces of surface than a cell has faces");
     solid.surface_begin.assign(particles.surface_begin.begin(), particles.surface_begin.begin() + static_cast<std::ptrdiff_t>(n) + 1);
     solid.piece_area = particles.piece_area, solid.piece_offset = particles.piece_offset;
   }
