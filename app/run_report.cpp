@@ -40,6 +40,7 @@ nlohmann::json run_result_json(const sim::RunResult& result, const std::filesyst
                       {"particle_steps", result.particle_steps}};
   if (!result.message.empty()) json["message"] = result.message;
   if (!result.over_limits.empty()) json["over_limits"] = result.over_limits;
+  if (!result.notices.empty()) json["notices"] = result.notices;
   for (std::size_t k = 0; k < result.columns.size() && k < result.last_row.size(); ++k)
     json["last"][result.columns[k]] = result.last_row[k];
   return json;
@@ -54,6 +55,7 @@ void print_run_result(const sim::RunResult& result, const std::filesystem::path&
   }
   if (!result.message.empty()) std::fprintf(stderr, "%s: %s\n", file.string().c_str(), result.message.c_str());
   for (const std::string& line : result.over_limits) std::fprintf(stderr, "%s: %s\n", file.string().c_str(), line.c_str());
+  for (const std::string& line : result.notices) std::fprintf(stderr, "%s: %s\n", file.string().c_str(), line.c_str());
 }
 
 void print_profile(const sim::RunResult& result) {

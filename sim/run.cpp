@@ -7,6 +7,7 @@
 
 #include "sim/elastic_stress.h"
 #include "sim/ledger.h"
+#include "sim/overload.h"
 #include "sim/run_columns.h"
 #include "sim/static_solution.h"
 #include "sim/stress.h"
@@ -70,6 +71,7 @@ struct Running {
   double started = now_seconds(), checkpointed = started;
   std::string status_before{};  // of the run that is continued
   RunResult result{};
+  std::optional<Overload> worst_overload{};  // of this part, at output times
 
   Running(const Scene<D>& of_scene, const RunSetup& with_setup) : scene(of_scene), setup(with_setup) {}
 
@@ -117,6 +119,7 @@ struct Running {
     if (state.time < book.next_output - slack) return;
     const std::vector<std::vector<double>> after = probes.evaluate(scene, state);
     measure_ledger(scene, state, scratch);
+    if (const auto now = overload(scene, state); now && (!worst_overload || now->strain > worst_overload->strain)) worst_overload = now;
     while (state.time >= book.next_output - slack && book.rows <= last_output()) {
       const double time = book.next_output;
       const double share = state.time > from && time < state.time - slack ? std::clamp((time - from) / (state.time - from), 0.0, 1.0) : 1;
@@ -231,7 +234,9 @@ struct Running {
   // The books are closed. A run that was killed after its last step, before this, is closed when it is continued.
   void close() {
     result.over_limits = over_limits(scene, state);
+    if (worst_overload) result.notices.push_back(overload_message(scene, *worst_overload));
     for (const std::string& line : result.over_limits) writer->add_warning(line);
+    for (const std::string& line : result.notices) writer->add_warning(line);
     end(RunEnding::finished, "finished", "");
   }
 };

@@ -47,6 +47,7 @@ struct RunResult {
   std::vector<std::string> columns;
   std::vector<double> last_row;
   std::vector<std::string> over_limits;  // of a finished run: books of the ledger over their limits (ledger.h)
+  std::vector<std::string> notices;      // what else its user should know: overloaded leaflets (overload.h)
 };
 
 template <int D>

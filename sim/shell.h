@@ -145,8 +145,10 @@ enum class Face { minus, middle, plus };
 // Cauchy stress, Pa, per row, at a face (the + face lies on the normal's side).
 template <int D>
 void shell_stress(const ShellElasticity<D>& shells, std::span<const Vector<D>> position, Face face, std::span<Eigen::Matrix3d> stress);
-// Largest in-plane principal stretch minus one over both faces, per row: for 'strain beyond the law's validity'.
+// Largest in-plane principal stretch minus one, per row, over both faces, or of the mid-surface: for 'strain beyond the law's validity'.
+enum class StrainOf { faces, middle };
 template <int D>
-void shell_largest_strain(const ShellElasticity<D>& shells, std::span<const Vector<D>> position, std::span<double> strain);
+void shell_largest_strain(const ShellElasticity<D>& shells, std::span<const Vector<D>> position, std::span<double> strain,
+                          StrainOf where = StrainOf::faces);
 
 }  // namespace sim

@@ -73,7 +73,7 @@ void shell_stress(const ShellElasticity<D>& shells, std::span<const Vector<D>> p
 }
 
 template <int D>
-void shell_largest_strain(const ShellElasticity<D>& shells, std::span<const Vector<D>> position, std::span<double> strain) {
+void shell_largest_strain(const ShellElasticity<D>& shells, std::span<const Vector<D>> position, std::span<double> strain, StrainOf where) {
   std::vector<Padded<D>> x(shells.size());
   for (std::size_t i = 0; i < shells.size(); ++i) x[i] = pad<D>(position[i]);
   const auto rows = static_cast<std::int32_t>(shells.size());
@@ -82,7 +82,8 @@ void shell_largest_strain(const ShellElasticity<D>& shells, std::span<const Vect
     const Kinematics<D> k = kinematics(shells, x.data(), i);
     strain[i] = 0;
     for (double side : {-0.5, 0.5}) {
-      const Eigen::Matrix2d u = square_root(metric_at(k.metric, k.curvature, side * shells.bodies[shells.body[i]].bending_thickness));
+      const double height = where == StrainOf::middle ? 0.0 : side * shells.bodies[shells.body[i]].bending_thickness;
+      const Eigen::Matrix2d u = square_root(metric_at(k.metric, k.curvature, height));
       const double mean = 0.5 * u.trace(), radius = std::sqrt(std::max(0.0, mean * mean - u.determinant()));
       strain[i] = std::max({strain[i], std::abs(mean + radius - 1), std::abs(mean - radius - 1)});
     }
@@ -91,7 +92,7 @@ void shell_largest_strain(const ShellElasticity<D>& shells, std::span<const Vect
 
 #define CUSP_INSTANTIATE(D)                                                                                               \
   template void shell_stress<D>(const ShellElasticity<D>&, std::span<const Vector<D>>, Face, std::span<Eigen::Matrix3d>); \
-  template void shell_largest_strain<D>(const ShellElasticity<D>&, std::span<const Vector<D>>, std::span<double>);
+  template void shell_largest_strain<D>(const ShellElasticity<D>&, std::span<const Vector<D>>, std::span<double>, StrainOf);
 CUSP_INSTANTIATE(2)
 CUSP_INSTANTIATE(3)
 #undef CUSP_INSTANTIATE
