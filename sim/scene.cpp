@@ -92,6 +92,7 @@ Scene<D> make_scene(SceneDescription<D> description) {
   scene.description = std::move(description);
   count_rows(scene);
   scene.back_depth = far_faces(scene);
+  if (fluid) scene.curvature = wall_curvatures(scene);
   const SceneDescription<D>& d = scene.description;
   if (d.gravity && d.gravity->norm() > 0) scene.gravity = Gravity<D>{*d.gravity};
   if (fluid && viscous) scene.viscosity = Viscosity{shear_dependent, !shells};

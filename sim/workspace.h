@@ -38,8 +38,9 @@ struct Workspace {
   std::vector<Padded<D>> velocity;  // m/s, of the step's start; filled by velocity_gradients
 
   // boundary particles as they are now (rows below first_fluid)
-  std::vector<Vector<D>> boundary_normal;    // unit, into the fluid (shell: + side)
-  std::vector<Vector<D>> boundary_velocity;  // m/s of the surface, dragging included
+  std::vector<Vector<D>> boundary_normal;     // unit, into the fluid (shell: + side)
+  std::vector<Vector<D>> boundary_velocity;   // m/s of the surface, dragging included
+  std::vector<Tensor<D>> boundary_curvature;  // 1/m, see wall_curvatures; empty where no wall is curved
 
   // the fluid's state, operator by operator
   std::vector<double> number_density;      // n_i / n0
