@@ -58,6 +58,11 @@ void moment_matrices(const Scene<D>& scene, const State<D>& state, Workspace<D>&
 template <int D>
 void velocity_gradients(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
 
+// What counts there of the jump from the velocity of a particle of fluid `body` to that of the boundary's surface with a unit `normal`.
+// kinematic: m²/s at the rate that a wall one spacing away would cause; < 0: not asked for yet, kept for the particle's next neighbour.
+template <int D>
+Vector<D> resolved_jump(const Scene<D>& scene, std::int32_t body, const Vector<D>& jump, const Vector<D>& normal, double& kinematic);
+
 // Eigenvalues of a symmetric matrix lifted to at least `floor`, then inverted.
 template <int D>
 Tensor<D> floored_inverse(const Tensor<D>& moment, double floor);
