@@ -11,7 +11,8 @@ using Eigen::Vector3d;
 // One sample's volume, shared between the two nearest particles.
 struct Sample {
   std::size_t first = 0, second = 0;
-  double to_first = 0, to_second = 0;  // share of a sample's volume
+  double to_first = 0, to_second = 0;                                      // share of a sample's volume
+  Vector3d from_first = Vector3d::Zero(), from_second = Vector3d::Zero();  // the sample, seen from them, m
 };
 
 // A sample is a cube: of a plane face within half its side, a part lies on either side.
@@ -33,6 +34,8 @@ Sample share_sample(const Shape& shape, const PointGrid& particles, const std::v
   if (depth[sample.first] < 1.5 * spacing) inside = std::clamp(0.5 - signed_distance(shape, place, dimension) / side, 0.0, 1.0);
   double own = 1;
   if (next < 1e300) own = std::min(1.0, 0.5 + (next - nearest) / (2 * (to_second - to_first).norm()) / side);
+  sample.from_first = -to_first;
+  sample.from_second = -to_second;
   sample.to_first = inside * own;
   sample.to_second = inside * (1 - own);
   return sample;
@@ -40,9 +43,9 @@ Sample share_sample(const Shape& shape, const PointGrid& particles, const std::v
 
 }  // namespace
 
-std::vector<double> cell_volumes(const Shape& shape, const std::vector<Vector3d>& position, const std::vector<double>& depth, int dimension,
-                                 double spacing, const PeriodicBox& box) {
-  std::vector<double> volume(position.size(), 0);
+Cells cell_volumes(const Shape& shape, const std::vector<Vector3d>& position, const std::vector<double>& depth, int dimension,
+                   double spacing, const PeriodicBox& box) {
+  Cells cells{std::vector<double>(position.size(), 0), std::vector<Vector3d>(position.size(), Vector3d::Zero())};
   BoundingBox bounds = bounding_box(shape, dimension);
   const double wanted = (dimension == 2 ? 0.125 : 0.25) * spacing;
   std::array<std::ptrdiff_t, 3> count{1, 1, 1};
@@ -68,11 +71,15 @@ std::vector<double> cell_volumes(const Shape& shape, const std::vector<Vector3d>
       layer[s] = share_sample(shape, particles, depth, place, dimension, spacing, side);
     }
     for (const Sample& sample : layer) {  // in a fixed order, whatever the number of threads
-      volume[sample.first] += sample.to_first * sample_volume;
-      volume[sample.second] += sample.to_second * sample_volume;
+      cells.volume[sample.first] += sample.to_first * sample_volume;
+      cells.volume[sample.second] += sample.to_second * sample_volume;
+      cells.centroid[sample.first] += sample.to_first * sample_volume * sample.from_first;
+      cells.centroid[sample.second] += sample.to_second * sample_volume * sample.from_second;
     }
   }
-  return volume;
+  for (std::size_t i = 0; i < position.size(); ++i)
+    if (cells.volume[i] > 0) cells.centroid[i] /= cells.volume[i];
+  return cells;
 }
 
 }  // namespace geometry

@@ -52,45 +52,56 @@ void cut_simplex(const std::array<const Corner*, N>& corners, std::vector<Surfac
   }
 }
 
+constexpr int block = 4;  // cells along a block's edge
+
+// Surface within one block of cells, its first corner at `origin`.
+std::vector<SurfaceElement> cut_block(const Shape& shape, int dimension, double spacing, const Vector3d& origin) {
+  std::vector<SurfaceElement> elements;
+  const int deep = dimension == 3 ? block : 0;
+  const Vector3d middle = origin + 0.5 * spacing * Vector3d(block, block, deep);
+  if (std::abs(signed_distance(shape, middle, dimension)) > 0.501 * spacing * block * std::sqrt(double(dimension))) return elements;
+  std::array<Corner, (block + 1) * (block + 1) * (block + 1)> corners;
+  const auto corner = [&](int i, int j, int k) { return &corners[i + (block + 1) * (j + (block + 1) * k)]; };
+  for (int k = 0; k <= deep; ++k)
+    for (int j = 0; j <= block; ++j)
+      for (int i = 0; i <= block; ++i) {
+        const Vector3d point = origin + spacing * Vector3d(i, j, k);
+        *corner(i, j, k) = {point, signed_distance(shape, point, dimension)};
+      }
+  // Six tetrahedra a cube, all round its main diagonal: neighbours' faces match.
+  constexpr int path[6][2] = {{1, 3}, {1, 5}, {2, 3}, {2, 6}, {4, 5}, {4, 6}};
+  for (int k = 0; k < std::max(deep, 1); ++k)
+    for (int j = 0; j < block; ++j)
+      for (int i = 0; i < block; ++i) {
+        const auto at = [&](int bits) { return corner(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2)); };
+        if (dimension == 2) {
+          cut_simplex<3>({at(0), at(1), at(3)}, elements);
+          cut_simplex<3>({at(0), at(3), at(2)}, elements);
+        } else {
+          for (const auto& two : path) cut_simplex<4>({at(0), at(two[0]), at(two[1]), at(7)}, elements);
+        }
+      }
+  return elements;
+}
+
 }  // namespace
 
 std::vector<SurfaceElement> surface_elements(const Shape& shape, int dimension, double spacing) {
   const BoundingBox box = bounding_box(shape, dimension);
   // Off the shape's own planes by an odd fraction: no corner lies exactly on a face.
-  const Vector3d origin = box.min.array() - 1.3717 * spacing;
-  std::array<int, 3> count{1, 1, 1};
-  for (int k = 0; k < dimension; ++k) count[k] = int(std::ceil((box.max[k] - origin[k]) / spacing)) + 3;
-  const auto index = [&](int i, int j, int k) { return i + std::size_t(count[0]) * (j + std::size_t(count[1]) * k); };
-  const std::size_t total = static_cast<std::size_t>(count[0]) * count[1] * count[2];
-  std::vector<Corner> corners(total);
-#pragma omp parallel for schedule(static)
-  for (int k = 0; k < count[2]; ++k)
-    for (int j = 0; j < count[1]; ++j)
-      for (int i = 0; i < count[0]; ++i) {
-        Vector3d point = origin + spacing * Vector3d(i, j, k);
-        if (dimension == 2) point.z() = 0;
-        corners[index(i, j, k)] = {point, signed_distance(shape, point, dimension)};
-      }
+  Vector3d origin = box.min.array() - 1.3717 * spacing;
+  if (dimension == 2) origin.z() = 0;
+  std::array<std::ptrdiff_t, 3> count{1, 1, 1};
+  for (int k = 0; k < dimension; ++k) count[k] = std::ptrdiff_t(std::ceil((box.max[k] - origin[k] + 2 * spacing) / (block * spacing)));
   std::vector<SurfaceElement> elements;
-  if (dimension == 2) {
-    for (int j = 0; j + 1 < count[1]; ++j)
-      for (int i = 0; i + 1 < count[0]; ++i) {
-        const Corner *a = &corners[index(i, j, 0)], *b = &corners[index(i + 1, j, 0)], *c = &corners[index(i + 1, j + 1, 0)],
-                     *d = &corners[index(i, j + 1, 0)];
-        cut_simplex<3>({a, b, c}, elements);
-        cut_simplex<3>({a, c, d}, elements);
-      }
-    return elements;
+  std::vector<std::vector<SurfaceElement>> layer(std::size_t(count[0] * count[1]));
+  for (std::ptrdiff_t k = 0; k < count[2]; ++k) {
+#pragma omp parallel for schedule(dynamic, 64)
+    for (std::ptrdiff_t b = 0; b < count[0] * count[1]; ++b)
+      layer[b] =
+          cut_block(shape, dimension, spacing, origin + block * spacing * Vector3d(double(b % count[0]), double(b / count[0]), double(k)));
+    for (const auto& part : layer) elements.insert(elements.end(), part.begin(), part.end());  // in order, whatever the number of threads
   }
-  // Six tetrahedra a cube, all round its main diagonal: neighbours' faces match.
-  constexpr int path[6][2] = {{1, 3}, {1, 5}, {2, 3}, {2, 6}, {4, 5}, {4, 6}};
-  for (int k = 0; k + 1 < count[2]; ++k)
-    for (int j = 0; j + 1 < count[1]; ++j)
-      for (int i = 0; i + 1 < count[0]; ++i) {
-        if (std::abs(corners[index(i, j, k)].distance) > 2 * spacing) continue;
-        const auto at = [&](int bits) { return &corners[index(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2))]; };
-        for (const auto& two : path) cut_simplex<4>({at(0), at(two[0]), at(two[1]), at(7)}, elements);
-      }
   return elements;
 }
 

@@ -212,6 +212,25 @@ void add_face_areas(ParticleSet& set, const Draft& draft, const SharedCells& cel
   }
 }
 
+// Volumes of the cells of a curved body's particles, and the particles moved to their cells' centroids (Lloyd's method): there a sum of
+// values at particles is right to second order, and a body of few layers keeps the same stiffness all round.
+void fill_cells(ParticleSet& set, const std::vector<std::uint8_t>& mobile, const Shape& shape, const PeriodicBox& box,
+                const PlacementOptions& options) {
+  constexpr int sweeps = 4;
+  for (int sweep = 0;; ++sweep) {
+    Cells cells = cell_volumes(shape, set.position, set.depth, options.dimension, options.spacing, box);
+    if (sweep == sweeps) {
+      set.volume = std::move(cells.volume);
+      return;
+    }
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      if (!mobile[i]) continue;
+      set.position[i] = box.wrap(set.position[i] + cells.centroid[i]);
+      set.depth[i] = std::max(0.0, -signed_distance(shape, set.position[i], options.dimension));
+    }
+  }
+}
+
 ParticleSet place_elastic(const std::vector<PlacedBody>& all, int which, const PlacementOptions& options, std::size_t& relaxed) {
   const std::vector<PlacedBody> bodies{all[which]};
   PlacementOptions alone = options;
@@ -232,10 +251,10 @@ ParticleSet place_elastic(const std::vector<PlacedBody>& all, int which, const P
     set.depth.back() = std::max(0.0, -signed_distance(bodies[0].shape, draft.position[i], options.dimension));
     own.cell.push_back(draft.cell[i]);
     own.body.push_back(0);
+    own.mobile.push_back(draft.mobile[i]);
   }
   if (set.size() == 0) return set;
-  if (moving > 0)
-    set.volume = cell_volumes(bodies[0].shape, set.position, set.depth, options.dimension, options.spacing, cells.lattice.periodic);
+  if (moving > 0) fill_cells(set, own.mobile, bodies[0].shape, cells.lattice.periodic, options);
   scale_volumes(set, volume);
   if (moving > 0) {
     set.surface = surface_shares(bodies[0].shape, set.position, options.dimension, options.spacing, volume);

@@ -70,11 +70,21 @@ SurfaceShare share_of(const std::vector<SurfaceElement>& elements, const std::ve
   return share;
 }
 
+bool has_mesh(const Shape& shape) {
+  const auto part_has = [](const Shape& part) { return has_mesh(part); };
+  return std::holds_alternative<MeshSolid>(shape.base) || std::any_of(shape.subtract.begin(), shape.subtract.end(), part_has) ||
+         std::any_of(shape.intersect.begin(), shape.intersect.end(), part_has);
+}
+
+// Grid on which the surface is cut into elements, in particle spacings. It chamfers edges: with a quarter of a spacing the faces beside
+// them lose so much that an eighth of a sphere of four layers bulges by 1 %. Meshes, to which distances are dear, have a quarter.
+double fineness(const Shape& shape) { return has_mesh(shape) ? 0.25 : 0.125; }
+
 }  // namespace
 
 std::vector<SurfaceShare> surface_shares(const Shape& shape, const std::vector<Vector3d>& position, int dimension, double spacing,
                                          double volume, const std::function<bool(const Vector3d&)>& inside) {
-  const std::vector<SurfaceElement> elements = surface_elements(shape, dimension, (dimension == 2 ? 0.125 : 0.25) * spacing);
+  const std::vector<SurfaceElement> elements = surface_elements(shape, dimension, fineness(shape) * spacing);
   std::vector<std::vector<std::size_t>> own(position.size());
   const PointGrid grid(position, 2.5 * spacing);
   for (std::size_t e = 0; e < elements.size(); ++e) {

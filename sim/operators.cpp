@@ -63,21 +63,29 @@ double kinematic_viscosity(const Scene<D>& scene, std::int32_t body, double rate
 }  // namespace
 
 template <int D>
+Vector<D> resolved_jump(const Scene<D>& scene, std::int32_t body, const Vector<D>& jump, const Vector<D>& normal, double& kinematic) {
+  constexpr double resolved_cell = 20;  // -, cell Reynolds number up to which a boundary layer of one spacing is resolved
+  const double l0 = scene.description.spacing;
+  const Vector<D> slip = jump - jump.dot(normal) * normal;
+  const double speed = slip.norm(), cell = speed * l0;
+  if (kinematic < 0) kinematic = kinematic_viscosity(scene, body, speed / l0);
+  return cell > resolved_cell * kinematic ? Vector<D>(jump - (1 - resolved_cell * kinematic / cell) * slip) : jump;
+}
+
+template <int D>
 void velocity_gradients(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
   const Index n = static_cast<Index>(state.size());
   work.velocity_gradient.resize(n);
-  const double l0 = scene.lattice.spacing;
   const double factor = scene.lattice.gradient_factor();
   const double least = scene.lattice.closest() * scene.lattice.closest();
   work.velocity.resize(n);
   work.gradient_columns.resize(n);
 #pragma omp parallel for schedule(static)
   for (Index i = 0; i < n; ++i) work.velocity[i] = pad<D>(state.velocity[i]);
-  constexpr double resolved_cell = 20;  // -, cell Reynolds number up to which a boundary layer of one spacing is resolved
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index i = scene.first_fluid; i < n; ++i) {
     DyadSum<D> sum;
-    double kinematic = -1;  // m²/s, at the rate that a wall one spacing away would cause; asked for only beside a boundary
+    double kinematic = -1;  // asked for only beside a boundary
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
       const double w = work.link_weight[k];
       if (w == 0) continue;
@@ -87,14 +95,9 @@ void velocity_gradients(const Scene<D>& scene, const State<D>& state, Workspace<
       if (j >= scene.first_fluid) {
         sum.add(c * (work.velocity[j] - work.velocity[i]), r);
       } else {
-        const Vector<D>& normal = work.boundary_normal[j];
         const double t = fluid_fraction<D>(scene, work, r.template head<D>(), j);
-        Vector<D> jump = work.boundary_velocity[j] - state.velocity[i];
-        const Vector<D> slip = jump - jump.dot(normal) * normal;
-        const double speed = slip.norm();
-        if (kinematic < 0) kinematic = kinematic_viscosity(scene, state.body[i], speed / l0);
-        const double cell = speed * l0;
-        if (cell > resolved_cell * kinematic) jump -= (1 - resolved_cell * kinematic / cell) * slip;
+        const Vector<D> jump =
+            resolved_jump<D>(scene, state.body[i], work.boundary_velocity[j] - state.velocity[i], work.boundary_normal[j], kinematic);
         sum.add(pad<D>(c / t * jump), r);
       }
     }
@@ -103,9 +106,10 @@ void velocity_gradients(const Scene<D>& scene, const State<D>& state, Workspace<
   }
 }
 
-#define INSTANTIATE(D)                                                            \
-  template Tensor<D> floored_inverse<D>(const Tensor<D>&, double);                \
-  template void moment_matrices(const Scene<D>&, const State<D>&, Workspace<D>&); \
+#define INSTANTIATE(D)                                                                                             \
+  template Tensor<D> floored_inverse<D>(const Tensor<D>&, double);                                                 \
+  template void moment_matrices(const Scene<D>&, const State<D>&, Workspace<D>&);                                  \
+  template Vector<D> resolved_jump<D>(const Scene<D>&, std::int32_t, const Vector<D>&, const Vector<D>&, double&); \
   template void velocity_gradients(const Scene<D>&, const State<D>&, Workspace<D>&);
 INSTANTIATE(2)
 INSTANTIATE(3)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "sim/scene.h"
 #include "sim/workspace.h"
@@ -12,19 +13,22 @@ namespace sim {
 // surface), d_f / (d_f + d_b) for a wall or solid of which the particle lies d_b below the true surface. r: from fluid to boundary
 // particle; normal: unit, into the fluid; back_depth: distance below the wall's far face, 0 = none near. Seen from behind the surface's
 // plane (round a corner, or the far face of a thin wall) the surface is taken to be d_b away in the direction of the fluid particle. Never
-// below 0.2, so that a fluid particle on the surface keeps a finite sample.
+// below 0.2, so that a fluid particle on the surface keeps a finite sample. bend = r.K r of a curved surface (wall_curvatures): a part q of
+// the way before the boundary particle it is crossed where q across - depth = q² bend / 2.
 template <int D>
-double fluid_fraction(const Vector<D>& r, const Vector<D>& normal, double depth, double back_depth = 0) {
+double fluid_fraction(const Vector<D>& r, const Vector<D>& normal, double depth, double back_depth = 0, double bend = 0) {
   if (depth <= 0) return 1;
   double across = -r.dot(normal);
-  if (across < 0 && back_depth > 0) across = -across, depth = back_depth;
-  return std::clamp(1.0 - depth / (across > depth ? across : std::max(r.norm(), 1e-12)), 0.2, 1.0);
+  if (across < 0 && back_depth > 0) across = -across, depth = back_depth, bend = 0;
+  if (across <= depth) return std::clamp(1.0 - depth / std::max(r.norm(), 1e-12), 0.2, 1.0);
+  return std::clamp(1.0 - 2 * depth / (across + std::sqrt(std::max(across * across - 2 * bend * depth, 0.0))), 0.2, 1.0);
 }
 
 // The same for the link from fluid to boundary row j.
 template <int D>
 double fluid_fraction(const Scene<D>& scene, const Workspace<D>& work, const Vector<D>& r, std::int32_t j) {
-  return fluid_fraction<D>(r, work.boundary_normal[j], scene.description.particles.depth[j], scene.back_depth[j]);
+  const double bend = work.boundary_curvature.empty() ? 0 : r.dot(work.boundary_curvature[j] * r);
+  return fluid_fraction<D>(r, work.boundary_normal[j], scene.description.particles.depth[j], scene.back_depth[j], bend);
 }
 
 // Whether the port gives its pressure (else its speed).
@@ -53,6 +57,11 @@ void moment_matrices(const Scene<D>& scene, const State<D>& state, Workspace<D>&
 // Eq (17), exact for linear fields.
 template <int D>
 void velocity_gradients(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
+
+// What counts there of the jump from the velocity of a particle of fluid `body` to that of the boundary's surface with a unit `normal`.
+// kinematic: m²/s at the rate that a wall one spacing away would cause; < 0: not asked for yet, kept for the particle's next neighbour.
+template <int D>
+Vector<D> resolved_jump(const Scene<D>& scene, std::int32_t body, const Vector<D>& jump, const Vector<D>& normal, double& kinematic);
 
 // Eigenvalues of a symmetric matrix lifted to at least `floor`, then inverted.
 template <int D>

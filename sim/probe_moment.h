@@ -22,6 +22,7 @@ class ProbeMoment {
   Vector<D> velocity_at(const Vector<D>& x, std::int32_t body);
   double pressure_at(const Vector<D>& x, std::int32_t body);
   double density_at(const Vector<D>& x, std::int32_t body);
+  double flow_through(const Probe<D>& probe);
 
  private:
   struct Near {
@@ -35,6 +36,7 @@ class ProbeMoment {
   bool behind_shell(const Vector<D>& x, const Vector<D>& sample, const std::vector<std::int32_t>& shells) const;
   bool in_wall(const Near& around) const;
   void prepare_space();
+  double cell_mean_excess(std::int32_t row, const Vector<D>& normal) const;
 
   const Scene<D>& scene_;
   const State<D>& state_;

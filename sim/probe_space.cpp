@@ -3,8 +3,10 @@
 #include <cmath>
 
 #include "sim/number_density.h"
+#include "sim/operators.h"
 #include "sim/point_fit.h"
 #include "sim/probe_moment.h"
+#include "sim/quadratic_fit.h"
 #include "sim/step.h"
 #include "sim/walls.h"
 
@@ -175,6 +177,53 @@ double ProbeMoment<D>::density_at(const Vector<D>& x, std::int32_t body) {
     value += weight[k] * ratio * scene_.density[state_.body[row]];
   }
   return value;
+}
+
+// By how much the mean of v.n over a particle's cell differs from its value at the particle, m/s: l0²/24 times the Laplacian of v.n across
+// the normal. Where the scheme takes a particle's velocity for its cell's mean (leaflets, inviscid fluid) or no fit holds: 0.
+template <int D>
+double ProbeMoment<D>::cell_mean_excess(std::int32_t row, const Vector<D>& normal) const {
+  if (!scene_.viscosity || !scene_.viscosity->corrected || state_.kind[row] != Kind::fluid || work_.surface[row] != 0) return 0;
+  const double l0 = scene_.description.spacing;
+  LaplacianFit<D> fit;
+  std::vector<Vector<D>> place;
+  std::vector<double> jump, link;
+  double kinematic = -1;
+  for (std::int64_t k = work_.neighbors.start[row]; k < work_.neighbors.start[row + 1]; ++k) {
+    const std::int32_t j = work_.neighbors.index[k];
+    if (work_.link_weight[k] == 0) continue;
+    const Vector<D> r = scene_.space.difference(state_.position[row], state_.position[j]);
+    const bool fluid = j >= scene_.first_fluid;
+    const Vector<D> step = (fluid ? state_.velocity[j] : work_.boundary_velocity[j]) - state_.velocity[row];
+    place.push_back((fluid ? 1.0 : fluid_fraction(scene_, work_, r, j)) / l0 * r);
+    jump.push_back((fluid ? step : resolved_jump<D>(scene_, state_.body[row], step, work_.boundary_normal[j], kinematic)).dot(normal));
+    link.push_back(work_.link_weight[k]);
+    fit.add(place.back(), link.back());
+  }
+  if (!fit.solve(Tensor<D>::Identity() - normal * normal.transpose())) return 0;
+  double sum = 0;
+  for (std::size_t k = 0; k < place.size(); ++k) sum += fit.weight(place[k], link[k]) * jump[k];
+  return sum / 24;
+}
+
+// Q = sum V <v.n> W(d) over the fluid near the plane, W a hat of half-width 2 l0: exact for any offset of a regular row of particles.
+// <v.n> is the mean over a particle's cell: with the value at its centre alone the parabola in a pipe of 5 particles along the radius would
+// carry 1.3 % too much.
+template <int D>
+double ProbeMoment<D>::flow_through(const Probe<D>& probe) {
+  prepare_space();
+  const double half_width = 2 * scene_.description.spacing;
+  double flow = 0;
+  for (std::size_t row = static_cast<std::size_t>(scene_.first_fluid); row < state_.size(); ++row) {
+    if (probe.body >= 0 && state_.body[row] != probe.body) continue;
+    const Vector<D> from = scene_.space.difference(probe.plane_point, state_.position[row]);
+    const double height = from.dot(probe.plane_normal);
+    if (std::abs(height) >= half_width || (from - height * probe.plane_normal).norm() > probe.plane_radius) continue;
+    const double speed =
+        state_.velocity[row].dot(probe.plane_normal) + cell_mean_excess(static_cast<std::int32_t>(row), probe.plane_normal);
+    flow += scene_.fluid_particle_volume * speed * (1 - std::abs(height) / half_width) / half_width;
+  }
+  return flow;
 }
 
 template class ProbeMoment<2>;

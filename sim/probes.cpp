@@ -164,21 +164,6 @@ std::vector<double> followed_value(const State<D>& state, const Probe<D>& probe,
   return entries<D>(probe.quantity == Quantity::position ? now : Vector<D>(now - point.place));
 }
 
-// Q = sum V v.n W(d) over the fluid near the plane, W a hat of half-width 2 l0: exact for any offset of a regular row of particles.
-template <int D>
-double flow_rate(const Scene<D>& scene, const State<D>& state, const Probe<D>& probe) {
-  const double half_width = 2 * scene.description.spacing;
-  double flow = 0;
-  for (std::size_t row = static_cast<std::size_t>(scene.first_fluid); row < state.size(); ++row) {
-    if (probe.body >= 0 && state.body[row] != probe.body) continue;
-    const Vector<D> from = scene.space.difference(probe.plane_point, state.position[row]);
-    const double height = from.dot(probe.plane_normal);
-    if (std::abs(height) >= half_width || (from - height * probe.plane_normal).norm() > probe.plane_radius) continue;
-    flow += scene.fluid_particle_volume * state.velocity[row].dot(probe.plane_normal) * (1 - std::abs(height) / half_width) / half_width;
-  }
-  return flow;
-}
-
 // Kinetic and stored energy of a body, or of all (fluid, solids, shells), J (2-D: J/m).
 template <int D>
 std::pair<double, double> energy(const Scene<D>& scene, const State<D>& state, std::int32_t body) {
@@ -303,7 +288,7 @@ std::vector<std::vector<double>> Probes<D>::evaluate(const Scene<D>& scene, cons
     std::vector<double> values;
     switch (probe.quantity) {
       case Quantity::flow_rate:
-        values = {flow_rate(scene, state, probe)};
+        values = {moment.flow_through(probe)};
         break;
       case Quantity::volume:
         values = {body_volume(scene, state, probe.body, moment)};

@@ -33,6 +33,19 @@ void count_rows(Scene<D>& scene) {
     scene.measure[i] = particles.kind[i] == Kind::shell ? std::min(1.0, particles.volume[i] / std::pow(l0, D - 1)) : 1.0;
 }
 
+// A fluid that the lattice fits with a pitch other than l0 (a length that l0 does not divide) has particles of another volume; so has its
+// undisturbed number density, n0 ~ 1/V, which a full fluid must not be pulled away from. Among leaflets, which swallow blood particle by
+// particle: l0^D.
+template <int D>
+void fit_fluid_volume(Scene<D>& scene, bool leaflets) {
+  const auto& particles = scene.description.particles;
+  const double cell = std::pow(scene.description.spacing, D);
+  double volume = 0, count = 0;
+  for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < particles.size(); ++i) volume += particles.volume[i], count += 1;
+  scene.fluid_particle_volume = leaflets || !(volume > 0) ? cell : volume / count;
+  scene.lattice.number_density *= cell / scene.fluid_particle_volume;
+}
+
 template <int D>
 double reference_speed(const SceneDescription<D>& description) {
   double speed = 0;
@@ -88,10 +101,11 @@ Scene<D> make_scene(SceneDescription<D> description) {
   if (scheme.viscosity_limit == 0) scheme.viscosity_limit = shells ? 0.1 : 1000;
   scene.lattice = make_lattice(D, description.spacing, scheme.kernel_radius * description.spacing, scheme.literal_weight);
   scene.space = make_periodicity(description.domain);
-  scene.fluid_particle_volume = std::pow(description.spacing, D);
   scene.description = std::move(description);
   count_rows(scene);
+  fit_fluid_volume(scene, shells);
   scene.back_depth = far_faces(scene);
+  if (fluid) scene.curvature = wall_curvatures(scene);
   const SceneDescription<D>& d = scene.description;
   if (d.gravity && d.gravity->norm() > 0) scene.gravity = Gravity<D>{*d.gravity};
   if (fluid && viscous) scene.viscosity = Viscosity{shear_dependent, !shells};

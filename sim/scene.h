@@ -34,8 +34,9 @@ struct Scene {
   std::int64_t elastic_count = 0, shell_count = 0, wall_count = 0, first_fluid = 0;
   std::vector<double> measure;       // rows below first_fluid: share of a lattice cell that the particle fills (shell: area / l0^(D-1))
   std::vector<double> back_depth;    // rows below first_fluid: distance to the far face of a thin wall, m; 0 = none near
+  std::vector<Tensor<D>> curvature;  // rows below first_fluid: of the wall's surface at the start, 1/m (walls.h); empty: all flat
   std::vector<double> density;       // per body, kg/m³
-  double fluid_particle_volume = 0;  // l0^D
+  double fluid_particle_volume = 0;  // m³ (2-D: m²): of the fluid's bodies over their particles, about l0^D
   double reference_speed = 0;        // m/s: initial, port and wall speeds; bounds the first steps
 
   std::optional<Gravity<D>> gravity;

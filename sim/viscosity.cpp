@@ -1,8 +1,7 @@
 #include "sim/viscosity.h"
 
-#include <Eigen/Dense>
-
 #include "sim/operators.h"
+#include "sim/quadratic_fit.h"
 
 namespace sim {
 using Index = std::ptrdiff_t;
@@ -24,29 +23,22 @@ double wall_viscosity(const Scene<D>& scene, const State<D>& state, const Worksp
   return viscosity(scene.description.bodies[state.body[i]].fluid.rheology, rate, scene.description.scheme.viscosity_limit);
 }
 
-// Flux coefficient of the link i-j: mu 2d/(lambda n0) w, times 1/fraction where the no-slip surface lies before the boundary particle.
+// Viscosity between fluid rows i and j, of link k.
 template <int D>
-double link_coefficient(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, Index i, std::int32_t j, const Vector<D>& r,
-                        double w) {
-  const double k = scene.lattice.laplacian_factor() * w;
-  if (j >= scene.first_fluid) return k * pair_viscosity(work.viscosity[i], work.viscosity[j]);
-  const double t = fluid_fraction(scene, work, r, j);
-  const double grip = work.grip.empty() || state.kind[j] != Kind::wall ? 1.0 : work.grip[i];
-  return grip * k * wall_viscosity(scene, state, work, i, j, r, t) / t;
+double fluid_viscosity(const Workspace<D>& work, Index i, std::int32_t j, std::int64_t k) {
+  return work.pair_viscosity.empty() ? pair_viscosity(work.viscosity[i], work.viscosity[j]) : work.pair_viscosity[k];
 }
 
+// Flux coefficient of the link i-j, number k: mu 2d/(lambda n0) w, times 1/fraction where the no-slip surface lies before the boundary
+// particle.
 template <int D>
-constexpr int quadratic_terms = D == 2 ? 5 : 9;
-
-// Monomials of a quadratic Taylor expansion, x in units of l0: x_a, x_a²/2, x_a x_b.
-template <int D>
-Eigen::Matrix<double, quadratic_terms<D>, 1> quadratic_monomials(const Vector<D>& x) {
-  Eigen::Matrix<double, quadratic_terms<D>, 1> m;
-  if constexpr (D == 2)
-    m << x[0], x[1], 0.5 * x[0] * x[0], 0.5 * x[1] * x[1], x[0] * x[1];
-  else
-    m << x[0], x[1], x[2], 0.5 * x[0] * x[0], 0.5 * x[1] * x[1], 0.5 * x[2] * x[2], x[0] * x[1], x[0] * x[2], x[1] * x[2];
-  return m;
+double link_coefficient(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, Index i, std::int32_t j, std::int64_t k,
+                        const Vector<D>& r) {
+  const double factor = scene.lattice.laplacian_factor() * work.link_weight[k];
+  if (j >= scene.first_fluid) return factor * fluid_viscosity(work, i, j, k);
+  const double t = fluid_fraction(scene, work, r, j);
+  const double grip = work.grip.empty() || state.kind[j] != Kind::wall ? 1.0 : work.grip[i];
+  return grip * factor * wall_viscosity(scene, state, work, i, j, r, t) / t;
 }
 
 }  // namespace
@@ -59,49 +51,53 @@ void particle_viscosity(const Scene<D>& scene, const State<D>& state, Workspace<
 #pragma omp parallel for schedule(static)
   for (Index i = scene.first_fluid; i < n; ++i)
     work.viscosity[i] = viscosity(scene.description.bodies[state.body[i]].fluid.rheology, shear_rate<D>(work.velocity_gradient[i]), limit);
+  work.pair_viscosity.clear();
+  if (!scene.viscosity->shear_dependent || !scene.viscosity->corrected) return;
+  work.pair_viscosity.resize(work.neighbors.index.size());
+#pragma omp parallel for schedule(dynamic, 256)
+  for (Index i = scene.first_fluid; i < n; ++i) {
+    const double own = shear_rate<D>(work.velocity_gradient[i]);
+    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+      const std::int32_t j = work.neighbors.index[k];
+      if (j < scene.first_fluid || work.link_weight[k] == 0) continue;
+      const double rate = 0.5 * (own + shear_rate<D>(work.velocity_gradient[j]));
+      const auto at_rate = [&](Index row) { return viscosity(scene.description.bodies[state.body[row]].fluid.rheology, rate, limit); };
+      work.pair_viscosity[k] = state.body[i] == state.body[j] ? at_rate(i) : pair_viscosity(at_rate(i), at_rate(j));
+    }
+  }
 }
 
 template <int D>
 void add_laplacian_correction(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
   const Index n = static_cast<Index>(state.size());
   const double l0 = scene.lattice.spacing;
-  constexpr int terms = quadratic_terms<D>;
-  using Column = Eigen::Matrix<double, terms, 1>;
-  using Square = Eigen::Matrix<double, terms, terms>;
-  Column laplacian = Column::Zero();
-  for (int a = 0; a < D; ++a) laplacian[D + a] = 1 / (l0 * l0);
 #pragma omp parallel for schedule(dynamic, 128)
   for (Index i = scene.first_fluid; i < n; ++i) {
     if (state.kind[i] != Kind::fluid || work.surface[i] != 0 || work.number_density[i] < 0.8) continue;
     const std::int64_t first = work.neighbors.start[i], last = work.neighbors.start[i + 1];
-    auto sample = [&](std::int64_t k, std::int32_t j, Vector<D>& r) {
+    auto sample = [&](std::int32_t j, Vector<D>& r) {
       r = scene.space.difference(state.position[i], state.position[j]);
       return j >= scene.first_fluid ? 1.0 : fluid_fraction(scene, work, r, j);
-      (void)k;
     };
-    Square moment = Square::Zero();
+    LaplacianFit<D> fit;
     Vector<D> r;
     for (std::int64_t k = first; k < last; ++k) {
       if (work.link_weight[k] == 0) continue;
-      const double t = sample(k, work.neighbors.index[k], r);
-      const Column m = quadratic_monomials<D>(t / l0 * r);
-      moment.template selfadjointView<Eigen::Lower>().rankUpdate(m, work.link_weight[k]);
+      const double t = sample(work.neighbors.index[k], r);
+      fit.add(t / l0 * r, work.link_weight[k]);
     }
-    const Eigen::LDLT<Square, Eigen::Lower> factor(moment);
-    const auto pivots = factor.vectorD();
-    if (!(pivots.minCoeff() > 1e-4 * pivots.maxCoeff())) continue;  // too few or too one-sided neighbours: keep the MPS Laplacian
-    const Column z = factor.solve(laplacian);
+    if (!fit.solve()) continue;  // keep the MPS Laplacian
     Vector<D> sum = Vector<D>::Zero();
     for (std::int64_t k = first; k < last; ++k) {
       const double w = work.link_weight[k];
       if (w == 0) continue;
       const std::int32_t j = work.neighbors.index[k];
-      const double t = sample(k, j, r);
-      const double consistent = w * z.dot(quadratic_monomials<D>(t / l0 * r));
+      const double t = sample(j, r);
+      const double consistent = fit.weight(t / l0 * r, w) / (l0 * l0);
       const bool fluid = j >= scene.first_fluid;
-      const double mu = fluid ? pair_viscosity(work.viscosity[i], work.viscosity[j]) : wall_viscosity(scene, state, work, i, j, r, t);
+      const double mu = fluid ? fluid_viscosity(work, i, j, k) : wall_viscosity(scene, state, work, i, j, r, t);
       const Vector<D> jump = (fluid ? state.velocity[j] : work.boundary_velocity[j]) - state.velocity[i];
-      sum += (mu * consistent - link_coefficient<D>(scene, state, work, i, j, r, w)) * jump;
+      sum += (mu * consistent - link_coefficient<D>(scene, state, work, i, j, k, r)) * jump;
     }
     work.acceleration[i] += sum / scene.density[state.body[i]];
   }
@@ -135,7 +131,7 @@ SolveReport solve_viscosity(const Scene<D>& scene, const State<D>& state, Worksp
       a.value[e] = 0;
       if (w == 0 || given) continue;
       const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
-      const double c = link_coefficient<D>(scene, state, work, i, j, r, w);
+      const double c = link_coefficient<D>(scene, state, work, i, j, k, r);
       diagonal += c;
       if (j < first)
         source += c * work.boundary_velocity[j];
@@ -168,7 +164,7 @@ SolveReport solve_viscosity(const Scene<D>& scene, const State<D>& state, Worksp
         const double w = work.link_weight[k];
         if (w == 0 || state.kind[i] != Kind::fluid) continue;
         const Vector<D> r = scene.space.difference(state.position[i], state.position[s]);
-        const double c = scene.fluid_particle_volume * link_coefficient<D>(scene, state, work, i, static_cast<std::int32_t>(s), r, w);
+        const double c = scene.fluid_particle_volume * link_coefficient<D>(scene, state, work, i, static_cast<std::int32_t>(s), k, r);
         drag += c * (state.velocity[i] + dt * work.acceleration[i] - work.boundary_velocity[s]);
         coefficient += c;
       }

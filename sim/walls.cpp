@@ -72,6 +72,7 @@ void boundary_surfaces(const Scene<D>& scene, const State<D>& state, Workspace<D
   const std::size_t first = static_cast<std::size_t>(scene.first_fluid);
   work.boundary_normal.assign(particles.normal.begin(), particles.normal.begin() + static_cast<std::ptrdiff_t>(first));
   work.boundary_velocity.assign(state.velocity.begin(), state.velocity.begin() + static_cast<std::ptrdiff_t>(first));
+  work.boundary_curvature = scene.curvature;
   if (!scene.solid_normal.empty()) {  // carried along by the deformation: n = cof(F) n0
     const auto solids = static_cast<std::size_t>(scene.elastic_count);
     solid_derivatives<D>(*scene.solids, std::span(state.position).first(solids), work.solid_motion.work);
@@ -95,6 +96,7 @@ void boundary_surfaces(const Scene<D>& scene, const State<D>& state, Workspace<D
       const Vector<D> center = motion.center + slide(motion, state.time);
       for (std::int64_t i = body.first; i < body.first + body.count; ++i) {
         work.boundary_normal[i] = rotation * particles.normal[i];
+        if (!scene.curvature.empty()) work.boundary_curvature[i] = rotation * scene.curvature[i] * rotation.transpose();
         work.boundary_velocity[i] +=
             wall_velocity<D>(motion, center, state.position[i] + particles.depth[i] * work.boundary_normal[i], state.time) -
             wall_velocity<D>(motion, center, state.position[i], state.time);

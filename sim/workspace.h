@@ -38,8 +38,9 @@ struct Workspace {
   std::vector<Padded<D>> velocity;  // m/s, of the step's start; filled by velocity_gradients
 
   // boundary particles as they are now (rows below first_fluid)
-  std::vector<Vector<D>> boundary_normal;    // unit, into the fluid (shell: + side)
-  std::vector<Vector<D>> boundary_velocity;  // m/s of the surface, dragging included
+  std::vector<Vector<D>> boundary_normal;     // unit, into the fluid (shell: + side)
+  std::vector<Vector<D>> boundary_velocity;   // m/s of the surface, dragging included
+  std::vector<Tensor<D>> boundary_curvature;  // 1/m, see wall_curvatures; empty where no wall is curved
 
   // the fluid's state, operator by operator
   std::vector<double> number_density;      // n_i / n0
@@ -50,6 +51,7 @@ struct Workspace {
   std::vector<Tensor<D>> velocity_gradient;  // (grad v)_ab = d v_a / d x_b, 1/s
   std::vector<DyadSum<D>> gradient_columns;  // the same in padded columns
   std::vector<double> viscosity;             // Pa s
+  std::vector<double> pair_viscosity;        // Pa s, per link of fluid rows; empty: the harmonic mean of the ends'
   std::vector<float> grip;                   // 1, or less beside a port whose profile is not resolved: share of the wall's drag
   std::vector<Vector<D>> acceleration;       // m/s², all but pressure
   std::vector<Vector<D>> pressure_gradient;  // Pa/m

@@ -105,5 +105,32 @@ TEST(NumberDensity, IsOneInTheLatticeAndMarksOnlyTheOutermostLayer) {
   }
 }
 
+// Blood whose viscosity falls with the shear rate, sheared at a rate that grows from plate to plate: each link takes the viscosity at its
+// middle, where the rate is the mean of the ends'.
+TEST(ParticleViscosity, OfALinkIsThatAtTheMeanRate) {
+  const HerschelBulkley blood{0.009, 0.86, 0.0175};
+  const Scene<2> scene = make_scene(testing::channel(0.5, 10, {1060, blood}, 0).description);
+  State<2> state = initial_state(scene);
+  Workspace<2> work;
+  for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i)
+    state.velocity[i] = Vector<2>(0.05 * std::pow(state.position[i][1] + 1, 2), 0);  // rate 0.1 (y + 1)
+  find_neighborhood(scene, state, work);
+  moment_matrices(scene, state, work);
+  velocity_gradients(scene, state, work);
+  particle_viscosity(scene, state, work);
+  ASSERT_EQ(work.pair_viscosity.size(), work.neighbors.index.size());
+  int links = 0;
+  for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i)
+    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+      const auto j = static_cast<std::size_t>(work.neighbors.index[k]);
+      if (std::abs(state.position[i][1]) > 0.16 || std::abs(state.position[j][1]) > 0.16) continue;  // far from the plates
+      const double rate = 0.1 * (0.5 * (state.position[i][1] + state.position[j][1]) + 1);
+      const double expected = herschel_bulkley_viscosity(blood, rate, 1000);
+      EXPECT_NEAR(work.pair_viscosity[k], expected, 1e-9 * expected);
+      ++links;
+    }
+  EXPECT_GT(links, 50);
+}
+
 }  // namespace
 }  // namespace sim

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "sim/fluid_scenes.h"
 #include "sim/point_fit.h"
 
 namespace {
@@ -121,6 +122,34 @@ TEST(Probes, ElasticPointsFollowALinearDisplacementUpToTheSurface) {
     EXPECT_NEAR(values[2][8 * k + 1], lambda * 1e-3, 0.02 * lambda * 1e-3);
     EXPECT_NEAR(values[2][8 * k + 3], G * 1e-3, 0.02 * G * 1e-3);
   }
+}
+
+TEST(Probes, FlowRateOfAParabolaIsItsIntegral) {
+  // Between plates at y = -0.5 and 0.5, eight particles across: their velocities alone sum up to 0.8 % too much.
+  sim::testing::FluidScene<2> channel = sim::testing::channel(0.5, 8, {1000, sim::Newtonian{1000}}, 0);
+  sim::Probe<2> flow = probe(Quantity::flow_rate, {});
+  flow.plane_point = {0.4, 0}, flow.plane_normal = {1, 0};
+  channel.description.probes = {flow};
+  const auto scene = sim::make_scene(channel.description);
+  sim::State<2> state = sim::initial_state(scene);
+  for (std::size_t i = 0; i < state.size(); ++i)
+    if (state.kind[i] == sim::Kind::fluid) state.velocity[i] = Vector2(1 - 4 * std::pow(state.position[i].y(), 2), 0);
+  sim::Probes<2> probes(scene, state);
+  EXPECT_NEAR(probes.evaluate(scene, state)[0][0], 2.0 / 3.0, 1e-5);  // a link's part in the fluid counts as a fifth at least
+}
+
+TEST(Probes, VolumeOfAFluidThatTheSpacingDoesNotDivideIsTheBodys) {
+  sim::SceneDescription<2> description = water_on_a_floor();
+  for (std::size_t i = 0; i < description.particles.size(); ++i)
+    if (description.particles.kind[i] == sim::Kind::fluid) description.particles.volume[i] *= 0.96;
+  description.probes = {probe(Quantity::volume, {}, 1)};
+  const auto scene = sim::make_scene(description);
+  const sim::Lattice even = sim::make_lattice(2, l0, scene.lattice.radius);
+  EXPECT_NEAR(scene.fluid_particle_volume, 0.96 * l0 * l0, 1e-12);
+  EXPECT_NEAR(scene.lattice.number_density, even.number_density / 0.96, 1e-9);
+  const sim::State<2> state = sim::initial_state(scene);
+  sim::Probes<2> probes(scene, state);
+  EXPECT_NEAR(probes.evaluate(scene, state)[0][0], 0.96 * 2 * 1.2, 1e-12);
 }
 
 TEST(Probes, FlowRateEnergyVolumeAndFront) {

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "sim/fluid_scenes.h"
+#include "sim/operators.h"
 #include "sim/step.h"
 
 namespace sim {
@@ -30,6 +33,41 @@ SceneDescription<D> round_wall(double radius, double spacing) {
   scene.start_body("drop", Kind::fluid);
   scene.add(Vector<D>::Zero());
   return scene.description;
+}
+
+TEST(WallCurvature, IsOneOverTheRadiusRoundAPipeAndNoneAlongIt) {
+  for (const double radius : {5.0, 12.0}) {
+    const double tolerance = 6.25 / (4 * radius * radius * radius);  // a circle over its parabola: (s / 2R)², s up to 2.5 l0
+    const Scene<3> pipe = make_scene(round_wall<3>(radius, 1.0));
+    ASSERT_EQ(pipe.curvature.size(), static_cast<std::size_t>(pipe.first_fluid));
+    for (std::int64_t i = 0; i < pipe.first_fluid; ++i) {
+      const Vector<3>& x = pipe.description.particles.position[i];
+      const Vector<3>& normal = pipe.description.particles.normal[i];
+      if (std::abs(x[2]) > 1.5) continue;
+      const Vector<3> round = normal.cross(Vector<3>::UnitZ());
+      EXPECT_NEAR(round.dot(pipe.curvature[i] * round), 1 / radius, tolerance);  // towards the fluid: the wall is hollow
+      EXPECT_NEAR(Vector<3>::UnitZ().dot(pipe.curvature[i] * Vector<3>::UnitZ()), 0, tolerance);
+    }
+    const Scene<2> circle = make_scene(round_wall<2>(radius, 1.0));
+    for (std::int64_t i = 0; i < circle.first_fluid; ++i) EXPECT_NEAR(circle.curvature[i].trace(), 1 / radius, tolerance);
+  }
+}
+
+TEST(WallCurvature, IsAbsentWhereWallsAreFlat) {
+  const Scene<2> tank = make_scene(testing::tank(0.1, 12, 12, 12, 8).description);
+  EXPECT_TRUE(tank.curvature.empty());
+}
+
+TEST(FluidFraction, EndsOnTheCurvedSurface) {
+  // From a point in a circle of radius 5 to wall particles behind it: the part of the way is that to the circle.
+  const double radius = 5, kappa = 1 / radius;
+  for (const double aside : {0.0, 0.1, 0.2, 0.3}) {
+    const Vector<2> x(0.0, -4.3), normal(-std::sin(aside), std::cos(aside)), b = -(radius + 0.5) * normal;
+    const Vector<2> r = b - x, tangent(normal[1], -normal[0]);
+    const Tensor<2> curvature = kappa * tangent * tangent.transpose();
+    const double t = fluid_fraction<2>(r, normal, 0.5, 0, r.dot(curvature * r));
+    EXPECT_NEAR((x + t * r).norm(), radius, 0.01) << aside;
+  }
 }
 
 TEST(TurningWall, DragsAtItsSurfaceAndKeepsItsCircle) {
