@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/operators.h"
 #include "sim/parallel.h"
 #include "sim/rheology.h"
 #include "sim/step.h"
@@ -123,6 +124,24 @@ void measure_ledger(const Scene<D>& scene, State<D>& state, Workspace<D>& scratc
 }
 
 template <int D>
+double runaway_energy(const Scene<D>& scene, const State<D>& before, const State<D>& after, Workspace<D>& scratch) {
+  constexpr double share = 0.5, calm = 0.1;  // of the kinetic energy before; m/s
+  const auto& ports = scene.description.ports;
+  const bool complete = std::all_of(ports.begin(), ports.end(), [](const Port<D>& port) { return gives_pressure(port); });
+  if (!scene.pressure || !complete || !scene.description.motions.empty() || scene.description.scheme.name == Scheme::paper) return 0;
+  const auto kinetic = [&](const State<D>& state) { return fluid_kinetic_energy(scene, state) + solid_kinetic_energy(scene, state); };
+  const auto work = [](const Ledger& ledger) { return ledger.port_work + ledger.load_work; };
+  double heaviest = 0;
+  for (const auto& body : scene.description.bodies)
+    if (body.kind == Kind::fluid) heaviest = std::max(heaviest, body.fluid.density);
+  const double blood = static_cast<double>(std::count(before.kind.begin(), before.kind.end(), Kind::fluid));
+  const double rest = 0.5 * heaviest * scene.fluid_particle_volume * blood * calm * calm, had = kinetic(before);
+  const double beyond = kinetic(after) - had - std::max(0.0, work(after.ledger) - work(before.ledger)) - share * std::max(had, rest) - rest;
+  if (beyond <= 0) return 0;
+  return std::max(0.0, beyond - std::max(0.0, elastic_energy(scene, before, scratch) - elastic_energy(scene, after, scratch)));
+}
+
+template <int D>
 std::vector<std::string> over_limits(const Scene<D>& scene, const State<D>& state) {
   std::vector<std::string> lines;
   const Limits& limits = scene.description.limits;
@@ -144,6 +163,7 @@ std::vector<std::string> over_limits(const Scene<D>& scene, const State<D>& stat
   template void account_shell_loads(const Scene<D>&, Ledger&, std::span<const Vector<D>>, std::span<const Vector<D>>, \
                                     std::span<const Vector<D>>, std::span<const Vector<D>>);                          \
   template void measure_ledger(const Scene<D>&, State<D>&, Workspace<D>&);                                            \
+  template double runaway_energy(const Scene<D>&, const State<D>&, const State<D>&, Workspace<D>&);                   \
   template std::vector<std::string> over_limits(const Scene<D>&, const State<D>&);
 INSTANTIATE(2)
 INSTANTIATE(3)

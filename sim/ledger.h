@@ -29,6 +29,12 @@ void account_shell_loads(const Scene<D>& scene, Ledger& ledger, std::span<const 
 template <int D>
 void measure_ledger(const Scene<D>& scene, State<D>& state, Workspace<D>& scratch);
 
+// What kinetic energy (J) a step gained beyond the work of ports and loads, the elastic energy set free and half of what there was, blood
+// at 0.1 m/s at least: above 0 only where a step ran away. 0 where the books do not hold all work: without blood, with moving walls or
+// ports of given speed, in the paper's scheme. Energies of the solids are asked for only where the rest does not suffice.
+template <int D>
+double runaway_energy(const Scene<D>& scene, const State<D>& before, const State<D>& after, Workspace<D>& scratch);
+
 // One line for each book that is over its limit (Limits), with value and limit; empty where all is well.
 template <int D>
 std::vector<std::string> over_limits(const Scene<D>& scene, const State<D>& state);

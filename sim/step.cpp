@@ -90,6 +90,13 @@ void check_step(const Scene<D>& scene, const State<D>& state, double dt) {
 }
 
 template <int D>
+[[noreturn]] void refuse_energy(double energy) {
+  char text[160];
+  std::snprintf(text, sizeof text, "the kinetic energy grew by %.3g %s beyond the work done in the step", energy, D == 3 ? "J" : "J/m");
+  throw NumericalFailure(text);
+}
+
+template <int D>
 void viscosity_stage(const Scene<D>& scene, State<D>& state, Workspace<D>& work, double dt, StepReport& report) {
   if (!scene.viscosity) return;
   const StageClock clock(work.stage_times, Stage::viscosity);
@@ -246,6 +253,7 @@ StepReport step(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
       else
         step_dry(scene, state, work, dt, report);
       check_step(scene, state, dt);
+      if (const double energy = runaway_energy(scene, before, state, work); energy > 0) refuse_energy<D>(energy);
       break;
     } catch (const NumericalFailure& failure) {
       state = before;
