@@ -109,34 +109,40 @@ struct NearElements {
   void measure(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, Index i) {
     const std::size_t count = element.size();
     const double half = 0.5 * scene.lattice.radius;
+    const Vector<D> here = state.position[i];
     const auto far = std::partition(element.begin(), element.end(), [&](std::int32_t e) {
-      const double least = half + work.sheet_elements[e].reach;
-      return (work.sheet_elements[e].center - state.position[i]).squaredNorm() <= least * least;
+      const SheetElement<D>& one = work.sheet_elements[e];
+      const double least = half + one.reach, over = one.normal.dot(here) - one.offset;
+      return (one.center - here).squaredNorm() <= least * least && over * over <= half * half * one.normal.squaredNorm();
     });
     near_count = static_cast<std::size_t>(far - element.begin());
-    height.resize(count), reach.resize(count), candidate.assign((count + 7) / 8 * 8, 0);
-    for (int k = 0; k < D; ++k) normal[k].resize(count), center[k].resize(count);
+    // Filled up to whole registers with elements that nothing is near.
+    const std::size_t whole = (count + 7) / 8 * 8;
+    height.assign(whole, 1.0), reach.assign(whole, -1.0), candidate.assign(whole, 0);
+    for (int k = 0; k < D; ++k) normal[k].assign(whole, 1.0), center[k].assign(whole, 0.0);
     for (std::size_t c = 0; c < count; ++c) {
       const SheetElement<D>& e = work.sheet_elements[element[c]];
-      for (int k = 0; k < D; ++k) normal[k][c] = e.normal[k], center[k][c] = e.center[k] - state.position[i][k];
+      for (int k = 0; k < D; ++k) normal[k][c] = e.normal[k], center[k][c] = e.center[k] - here[k];
       reach[c] = 1.0001 * e.reach * e.reach;
-      height[c] = e.normal.dot(state.position[i]) - e.offset;
+      height[c] = e.normal.dot(here) - e.offset;
     }
   }
 
-  // Marks the elements, of the first `count`, of which x_i + d lies on the other side than x_i and which are near where d crosses their
-  // plane.
+  // Marks the elements, of at least the first `count`, of which x_i + d lies on the other side than x_i and which are near where d crosses
+  // their plane.
   void find_candidates(const Vector<D>& d, std::size_t count) {
     std::array<const double*, D> n, m;
     for (int k = 0; k < D; ++k) n[k] = normal[k].data(), m[k] = center[k].data();
     const double *here = height.data(), *far = reach.data();
     std::uint8_t* result = candidate.data();
+    const Vector<D> way = d;
+    const std::size_t whole = (count + 7) / 8 * 8;
 #pragma omp simd
-    for (std::size_t c = 0; c < count; ++c) {
+    for (std::size_t c = 0; c < whole; ++c) {
       double change = 0, aside = 0;
-      for (int k = 0; k < D; ++k) change += n[k][c] * d[k];
+      for (int k = 0; k < D; ++k) change += n[k][c] * way[k];
       const double part = -here[c] / change;
-      for (int k = 0; k < D; ++k) aside += (part * d[k] - m[k][c]) * (part * d[k] - m[k][c]);
+      for (int k = 0; k < D; ++k) aside += (part * way[k] - m[k][c]) * (part * way[k] - m[k][c]);
       result[c] = static_cast<std::uint8_t>(((here[c] > 0) ^ (here[c] + change > 0)) & (aside <= far[c]));
     }
   }
@@ -226,34 +232,72 @@ void cut_links(const Scene<D>& scene, const State<D>& state, Workspace<D>& work)
   }
 }
 
+namespace {
+
+// Blood particle `unknown` wets a face, not yet with a weight's share of the face's sum.
+struct Wet {
+  std::int32_t face, unknown;
+  double weight, visible;
+};
+
+// Who wets which face: blood particles in ascending order, part by part of near_sheet so that parts can be looked at at once.
+template <int D>
+std::vector<Wet> find_wet(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work) {
+  constexpr Index part_rows = 256;
+  const std::int32_t first_shell = static_cast<std::int32_t>(scene.elastic_count);
+  const Index near = static_cast<Index>(work.near_sheet.size()), parts = (near + part_rows - 1) / part_rows;
+  std::vector<std::vector<Wet>> found(static_cast<std::size_t>(parts));
+#pragma omp parallel for schedule(dynamic, 1)
+  for (Index part = 0; part < parts; ++part)
+    for (Index a = part * part_rows; a < std::min(near, (part + 1) * part_rows); ++a) {
+      const std::int32_t i = work.near_sheet[a];
+      if (state.kind[i] != Kind::fluid || work.unknown[i] < 0 || work.support[i] <= 0) continue;
+      for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
+        const std::int32_t j = work.neighbors.index[k];
+        if (work.link_weight[k] == 0 || state.kind[j] != Kind::shell) continue;
+        const double height = scene.space.difference(state.position[j], state.position[i]).dot(work.boundary_normal[j]);
+        const double weight = work.support[i] * work.link_weight[k];
+        found[part].push_back(
+            {2 * (j - first_shell) + (height > 0 ? 0 : 1), work.unknown[i], weight * std::abs(height), weight / scene.measure[j]});
+      }
+    }
+  std::vector<Wet> all;
+  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+}  // namespace
+
 template <int D>
 void wetted_sides(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
-  const std::size_t shells = static_cast<std::size_t>(scene.shell_count);
-  const std::int32_t first_shell = static_cast<std::int32_t>(scene.elastic_count);
-  auto& wetting = work.wetting;
-  wetting.resize(2 * shells);
-  for (auto& links : wetting) links.clear();
-  std::vector<double> visible(2 * shells, 0);
-  for (std::int32_t i : work.near_sheet) {
-    if (state.kind[i] != Kind::fluid || work.unknown[i] < 0 || work.support[i] <= 0) continue;
-    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
-      const std::int32_t j = work.neighbors.index[k];
-      if (work.link_weight[k] == 0 || state.kind[j] != Kind::shell) continue;
-      const double height = scene.space.difference(state.position[j], state.position[i]).dot(work.boundary_normal[j]);
-      const std::size_t face = 2 * static_cast<std::size_t>(j - first_shell) + (height > 0 ? 0 : 1);
-      wetting[face].push_back({work.unknown[i], work.support[i] * work.link_weight[k] * std::abs(height)});
-      visible[face] += work.support[i] * work.link_weight[k] / scene.measure[j];
-    }
+  const std::size_t faces = 2 * static_cast<std::size_t>(scene.shell_count);
+  const std::vector<Wet> found = find_wet(scene, state, work);
+  std::vector<double> visible(faces, 0), sum(faces, 0);
+  work.wet_start.assign(faces + 1, 0);
+  for (const Wet& wet : found) {
+    ++work.wet_start[wet.face + 1];
+    visible[wet.face] += wet.visible;
+    sum[wet.face] += wet.weight;
   }
+  for (std::size_t a = 0; a < faces; ++a) work.wet_start[a + 1] += work.wet_start[a];
+  std::vector<std::int32_t> next(work.wet_start.begin(), work.wet_start.end() - 1);
+  work.wetting.resize(found.size()), work.wet_faces.resize(found.size());
+  work.wet_unknown.clear(), work.wet_unknown_start.clear();
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const Wet& wet = found[k];
+    const double weight = wet.weight / (sum[wet.face] > 0 ? sum[wet.face] : 1.0);
+    work.wetting[next[wet.face]++] = {wet.unknown, weight};
+    work.wet_faces[k] = {wet.face, weight};
+    if (!work.wet_unknown.empty() && work.wet_unknown.back() == wet.unknown) continue;
+    work.wet_unknown.push_back(wet.unknown);
+    work.wet_unknown_start.push_back(static_cast<std::int32_t>(k));
+  }
+  work.wet_unknown_start.push_back(static_cast<std::int32_t>(found.size()));
   // Wet: of the half space that blood on a lattice fills beside a leaflet (0.3 n0), half and more is seen; dry: less than a seventh.
   const double full = 0.3 * scene.lattice.number_density;
-  work.wet_share.assign(2 * shells, 0);
-  for (std::size_t a = 0; a < 2 * shells; ++a) {
-    double sum = 0;
-    for (const auto& link : wetting[a]) sum += link.weight;
-    if (sum > 0) work.wet_share[a] = std::clamp((visible[a] / full - 0.15) / 0.35, 0.0, 1.0);
-    for (auto& link : wetting[a]) link.weight /= sum > 0 ? sum : 1.0;
-  }
+  work.wet_share.assign(faces, 0);
+  for (std::size_t a = 0; a < faces; ++a)
+    if (sum[a] > 0) work.wet_share[a] = std::clamp((visible[a] / full - 0.15) / 0.35, 0.0, 1.0);
   work.film = make_gap_film(work.wet_share, scene.sheet->neighbor_start, scene.sheet->neighbor);
 }
 
