@@ -13,7 +13,6 @@ using namespace shell_kernel;
 namespace {
 
 constexpr int chunk = 16;  // sub-steps between looks at how far the contact search still holds
-constexpr int deal = 64;   // rows that a thread takes at a time: held rows, which cost nothing, lie together
 // Sub-steps: the longest relaxation time that they take. Symplectic Euler with K (x + tau v) is stable for (h w)^2 (1 + 2 tau / h) <= 4;
 // along the normal, where the blood's mass moves too, (h w)^2 stays below 0.44.
 constexpr double most_relaxation = 4;
@@ -129,15 +128,15 @@ ShellSubstepReport shell_substeps(const ShellElasticity<D>& shells, Contact<D>* 
     const auto contact_rows = contact ? static_cast<std::int32_t>(contact->rows.size()) : 0;
 #pragma omp parallel if (rows > 200)
     for (int step = 0; step < count; ++step) {
-#pragma omp for schedule(static, deal)
+#pragma omp for schedule(static)
       for (std::int32_t i = 0; i < rows; ++i)
         work.limited[i] |= differentiate_row(shells, work.ahead.data(), work.v.data(), i, work.derivative[i], work.own[i], work.normal[i]);
       if (contact_rows > 0) {
-#pragma omp for schedule(static, deal)
+#pragma omp for schedule(static)
         for (std::int32_t r = 0; r < contact_rows; ++r)
           contact_kernel::evaluate_row(*contact, shells, work.x.data(), work.v.data(), work.normal.data(), r);
       }
-#pragma omp for schedule(static, deal)
+#pragma omp for schedule(static)
       for (std::int32_t i = 0; i < rows; ++i) advance(shells, contact_rows > 0 ? contact : nullptr, input, work, i, dt, relaxation);
 #pragma omp single
       {
