@@ -1,6 +1,8 @@
 #include "sim/viscosity.h"
 
-#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <numeric>
 
 #include "sim/operators.h"
 
@@ -71,16 +73,60 @@ struct WallLinks {
 template <int D>
 constexpr int quadratic_terms = D == 2 ? 5 : 9;
 
-// Monomials of a quadratic Taylor expansion, x in units of l0: x_a, x_a²/2, x_a x_b.
+// Monomials of a quadratic Taylor expansion, x in units of l0: x_a, x_a²/2, x_a x_b; filled up with zeros to whole registers.
 template <int D>
-Eigen::Matrix<double, quadratic_terms<D>, 1> quadratic_monomials(const Vector<D>& x) {
-  Eigen::Matrix<double, quadratic_terms<D>, 1> m;
+using Monomials = Eigen::Matrix<double, 12, 1>;
+template <int D>
+Monomials<D> quadratic_monomials(const Vector<D>& x) {
+  Monomials<D> m;
   if constexpr (D == 2)
-    m << x[0], x[1], 0.5 * x[0] * x[0], 0.5 * x[1] * x[1], x[0] * x[1];
+    m << x[0], x[1], 0.5 * x[0] * x[0], 0.5 * x[1] * x[1], x[0] * x[1], 0, 0, 0, 0, 0, 0, 0;
   else
-    m << x[0], x[1], x[2], 0.5 * x[0] * x[0], 0.5 * x[1] * x[1], 0.5 * x[2] * x[2], x[0] * x[1], x[0] * x[2], x[1] * x[2];
+    m << x[0], x[1], x[2], 0.5 * x[0] * x[0], 0.5 * x[1] * x[1], 0.5 * x[2] * x[2], x[0] * x[1], x[0] * x[2], x[1] * x[2], 0, 0, 0;
   return m;
 }
+
+// Sum of w m m^T over a particle's neighbours, row by row.
+template <int D>
+struct QuadraticMoment {
+  static constexpr int terms = quadratic_terms<D>;
+  std::array<Monomials<D>, terms> row;
+
+  QuadraticMoment() { row.fill(Monomials<D>::Zero()); }
+  void add(double w, const Monomials<D>& m) {
+    for (int a = 0; a < terms; ++a) row[a] += (w * m[a]) * m;
+  }
+  // z with M z = right, by L D L^T in the order of falling diagonals; false where a pivot falls below 1e-4 of the largest: too few or too
+  // one-sided neighbours.
+  bool solve(const Monomials<D>& right, Monomials<D>& z) const {
+    std::array<int, terms> order;
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](int a, int b) { return row[a][a] > row[b][b]; });
+    std::array<Monomials<D>, terms> a;  // upper triangle, and the right-hand side behind it
+    for (int i = 0; i < terms; ++i) {
+      for (int j = 0; j < terms; ++j) a[i][j] = row[order[i]][order[j]];
+      for (int j = terms; j < a[i].size(); ++j) a[i][j] = 0;
+      a[i][terms] = right[order[i]];
+    }
+    double least = a[0][0], largest = a[0][0];
+    for (int k = 0; k < terms; ++k) {
+      const double pivot = a[k][k];
+      least = std::min(least, pivot), largest = std::max(largest, pivot);
+      if (!(least > 1e-4 * largest)) return false;
+      const double inverse = 1 / pivot;
+      for (int i = k + 1; i < terms; ++i) a[i] -= (a[k][i] * inverse) * a[k];
+    }
+    z.setZero();
+    std::array<double, terms> solution;
+    for (int k = terms; k-- > 0;) {
+      double rest = a[k][terms];
+      for (int j = k + 1; j < terms; ++j) rest -= a[k][j] * solution[j];
+      solution[k] = rest / a[k][k];
+      z[order[k]] = solution[k];
+    }
+    return true;
+  }
+};
 
 }  // namespace
 
@@ -104,38 +150,32 @@ template <int D>
 void add_laplacian_correction(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
   const Index n = static_cast<Index>(state.size());
   const double l0 = scene.lattice.spacing;
-  constexpr int terms = quadratic_terms<D>;
-  using Column = Eigen::Matrix<double, terms, 1>;
-  using Square = Eigen::Matrix<double, terms, terms>;
-  Column laplacian = Column::Zero();
+  Monomials<D> laplacian = Monomials<D>::Zero();
   for (int a = 0; a < D; ++a) laplacian[D + a] = 1 / (l0 * l0);
 #pragma omp parallel for schedule(dynamic, 128)
   for (Index i = scene.first_fluid; i < n; ++i) {
     if (state.kind[i] != Kind::fluid || work.surface[i] != 0 || work.number_density[i] < 0.8) continue;
     const std::int64_t first = work.neighbors.start[i], last = work.neighbors.start[i + 1];
-    auto sample = [&](std::int64_t k, std::int32_t j, Vector<D>& r) {
+    // The way to the neighbour, and the part of it at whose end its velocity holds.
+    const auto sample = [&](std::int32_t j, Vector<D>& r) {
       r = scene.space.difference(state.position[i], state.position[j]);
       return j >= scene.first_fluid ? 1.0 : fluid_fraction(scene, work, r, j);
-      (void)k;
     };
-    Square moment = Square::Zero();
+    QuadraticMoment<D> moment;
     Vector<D> r;
     for (std::int64_t k = first; k < last; ++k) {
       if (work.link_weight[k] == 0) continue;
-      const double t = sample(k, work.neighbors.index[k], r);
-      const Column m = quadratic_monomials<D>(t / l0 * r);
-      moment.template selfadjointView<Eigen::Lower>().rankUpdate(m, work.link_weight[k]);
+      const double t = sample(work.neighbors.index[k], r);
+      moment.add(work.link_weight[k], quadratic_monomials<D>(t / l0 * r));
     }
-    const Eigen::LDLT<Square, Eigen::Lower> factor(moment);
-    const auto pivots = factor.vectorD();
-    if (!(pivots.minCoeff() > 1e-4 * pivots.maxCoeff())) continue;  // too few or too one-sided neighbours: keep the MPS Laplacian
-    const Column z = factor.solve(laplacian);
+    Monomials<D> z;
+    if (!moment.solve(laplacian, z)) continue;  // keep the MPS Laplacian
     Vector<D> sum = Vector<D>::Zero();
     for (std::int64_t k = first; k < last; ++k) {
       const double w = work.link_weight[k];
       if (w == 0) continue;
       const std::int32_t j = work.neighbors.index[k];
-      const double t = sample(k, j, r);
+      const double t = sample(j, r);
       const double consistent = w * z.dot(quadratic_monomials<D>(t / l0 * r));
       const bool fluid = j >= scene.first_fluid;
       const double mu = fluid ? pair_viscosity(work.viscosity[i], work.viscosity[j]) : wall_viscosity(scene, state, work, i, j, r, t);
