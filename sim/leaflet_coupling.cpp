@@ -116,6 +116,7 @@ void couple_leaflets(const Scene<D>& scene, const State<D>& state, Workspace<D>&
 
 template <int D>
 void apply_coupling(const Workspace<D>& work, std::span<const double> x, std::span<double> y) {
+  if (work.coupling.empty()) return;
   std::vector<double> face = face_pressures<D>(work, x), moved(face.size(), 0);
   for (const auto& c : work.coupling) {
     moved[2 * c.shell] = c.strength * (face[2 * c.shell] - face[2 * c.shell + 1]);
