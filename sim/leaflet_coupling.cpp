@@ -86,10 +86,12 @@ namespace {
 // Pressure on every face of the shells from the blood's, Pa.
 template <int D>
 std::vector<double> face_pressures(const Workspace<D>& work, std::span<const double> pressure) {
-  std::vector<double> face(work.wetting.size(), 0);
-#pragma omp parallel for schedule(static) if (face.size() > 1000)
-  for (Index a = 0; a < static_cast<Index>(face.size()); ++a)
-    for (const auto& link : work.wetting[a]) face[a] += link.weight * pressure[link.unknown];
+  const Index faces = static_cast<Index>(work.wet_start.size()) - 1;
+  std::vector<double> face(static_cast<std::size_t>(faces), 0);
+#pragma omp parallel for schedule(static) if (faces > 1000)
+  for (Index a = 0; a < faces; ++a)
+    for (std::int32_t k = work.wet_start[a]; k < work.wet_start[a + 1]; ++k)
+      face[a] += work.wetting[k].weight * pressure[work.wetting[k].unknown];
   film_pressure(work.film, face);
   return face;
 }
@@ -98,9 +100,14 @@ std::vector<double> face_pressures(const Workspace<D>& work, std::span<const dou
 template <int D>
 void displace_blood(const Workspace<D>& work, std::vector<double>& face, std::span<double> volume) {
   film_outflow(work.film, face);
-  for (std::size_t a = 0; a < face.size(); ++a)
-    if (face[a] != 0)
-      for (const auto& link : work.wetting[a]) volume[link.unknown] += link.weight * face[a];
+  const Index wet = static_cast<Index>(work.wet_unknown.size());
+#pragma omp parallel for schedule(static) if (wet > 1000)
+  for (Index w = 0; w < wet; ++w) {
+    double sum = 0;
+    for (std::int32_t k = work.wet_unknown_start[w]; k < work.wet_unknown_start[w + 1]; ++k)
+      sum += work.wet_faces[k].weight * face[work.wet_faces[k].face];
+    volume[work.wet_unknown[w]] += sum;
+  }
 }
 
 }  // namespace
@@ -124,6 +131,7 @@ void couple_leaflets(const Scene<D>& scene, const State<D>& state, Workspace<D>&
 
 template <int D>
 void apply_coupling(const Workspace<D>& work, std::span<const double> x, std::span<double> y) {
+  if (work.coupling.empty()) return;
   std::vector<double> face = face_pressures<D>(work, x), moved(face.size(), 0);
   for (const auto& c : work.coupling) {
     moved[2 * c.shell] = c.strength * (face[2 * c.shell] - face[2 * c.shell + 1]);
@@ -133,20 +141,27 @@ void apply_coupling(const Workspace<D>& work, std::span<const double> x, std::sp
 }
 
 template <int D>
-void matrix_for_multigrid(const Workspace<D>& work, SymmetricMatrix& a) {
+void link_sides(const Workspace<D>& work, SymmetricMatrix& a) {
   constexpr std::size_t strongest = 4;  // links a side that stand for all
   struct Entry {
     std::int32_t row, column;
     double value;
   };
   std::vector<Entry> entries;
-  a.diagonal = work.matrix.diagonal;
+  const Index rows = static_cast<Index>(work.matrix.rows());
+  a.diagonal.assign(static_cast<std::size_t>(rows), 0);
+  a.start.assign(static_cast<std::size_t>(rows) + 1, 0);
+  std::vector<typename Workspace<D>::WetLink> side[2];
   for (const auto& c : work.coupling) {
     if (work.wet_share[2 * c.shell] < 0.5 || work.wet_share[2 * c.shell + 1] < 0.5) continue;
-    std::vector<typename Workspace<D>::WetLink> side[2] = {work.wetting[2 * c.shell], work.wetting[2 * c.shell + 1]};
-    for (auto& s : side) {
-      std::stable_sort(s.begin(), s.end(), [](const auto& p, const auto& q) { return p.weight > q.weight; });
-      if (s.size() > strongest) s.resize(strongest);
+    for (int k = 0; k < 2; ++k) {
+      auto& s = side[k];
+      s.assign(work.wetting.begin() + work.wet_start[2 * c.shell + k], work.wetting.begin() + work.wet_start[2 * c.shell + k + 1]);
+      const auto last = s.begin() + static_cast<Index>(std::min(strongest, s.size()));
+      std::partial_sort(s.begin(), last, s.end(), [](const auto& p, const auto& q) {
+        return p.weight > q.weight || (p.weight == q.weight && p.unknown < q.unknown);
+      });
+      s.erase(last, s.end());
       double sum = 0;
       for (const auto& link : s) sum += link.weight;
       for (auto& link : s) link.weight /= sum;
@@ -159,28 +174,16 @@ void matrix_for_multigrid(const Workspace<D>& work, SymmetricMatrix& a) {
         entries.push_back({q.unknown, p.unknown, -v});
         a.diagonal[p.unknown] += v;
         a.diagonal[q.unknown] += v;
+        ++a.start[p.unknown + 1], ++a.start[q.unknown + 1];
       }
   }
-  std::stable_sort(entries.begin(), entries.end(), [](const Entry& p, const Entry& q) { return p.row < q.row; });
-  const Index rows = static_cast<Index>(work.matrix.rows());
-  std::vector<std::size_t> first(rows + 1, entries.size());  // of each row's further entries
-  for (std::size_t e = entries.size(); e-- > 0;) first[entries[e].row] = e;
-  for (Index u = rows; u-- > 0;) first[u] = std::min(first[u], first[u + 1]);
-  a.start.resize(rows + 1);
-  for (Index u = 0; u <= rows; ++u) a.start[u] = work.matrix.start[u] + static_cast<std::int64_t>(first[u]);
-  a.column.resize(work.matrix.column.size() + entries.size());
-  a.value.resize(a.column.size());
-#pragma omp parallel for schedule(static)
-  for (Index u = 0; u < rows; ++u) {
-    std::int64_t to = a.start[u];
-    for (std::int64_t k = work.matrix.start[u]; k < work.matrix.start[u + 1]; ++k, ++to) {
-      a.column[to] = work.matrix.column[k];
-      a.value[to] = work.matrix.value[k];
-    }
-    for (std::size_t e = first[u]; e < first[u + 1]; ++e, ++to) {
-      a.column[to] = entries[e].column;
-      a.value[to] = entries[e].value;
-    }
+  for (Index u = 0; u < rows; ++u) a.start[u + 1] += a.start[u];
+  a.column.resize(entries.size()), a.value.resize(entries.size());
+  std::vector<std::int64_t> next(a.start.begin(), a.start.end() - 1);
+  for (const Entry& entry : entries) {
+    const std::int64_t to = next[entry.row]++;
+    a.column[to] = entry.column;
+    a.value[to] = entry.value;
   }
 }
 
@@ -209,7 +212,7 @@ void correct_leaflets(const Scene<D>& scene, State<D>& state, Workspace<D>& work
   template ShellSubstepReport predict_leaflets(const Scene<D>&, const State<D>&, Workspace<D>&, double); \
   template void couple_leaflets(const Scene<D>&, const State<D>&, Workspace<D>&, double);                \
   template void apply_coupling(const Workspace<D>&, std::span<const double>, std::span<double>);         \
-  template void matrix_for_multigrid(const Workspace<D>&, SymmetricMatrix&);                             \
+  template void link_sides(const Workspace<D>&, SymmetricMatrix&);                                       \
   template void correct_leaflets(const Scene<D>&, State<D>&, Workspace<D>&, double);
 INSTANTIATE(2)
 INSTANTIATE(3)

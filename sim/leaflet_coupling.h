@@ -34,9 +34,10 @@ void couple_leaflets(const Scene<D>& scene, const State<D>& state, Workspace<D>&
 template <int D>
 void apply_coupling(const Workspace<D>& work, std::span<const double> x, std::span<double> y);
 
-// The pressure matrix with the rank-one terms replaced by links between the blood of the two sides: what the multigrid is built from.
+// Links between the blood of a leaflet's two sides that stand for the rank-one terms where the multigrid is built: what they add to the
+// pressure matrix' diagonal, and their entries beside its own.
 template <int D>
-void matrix_for_multigrid(const Workspace<D>& work, SymmetricMatrix& matrix);
+void link_sides(const Workspace<D>& work, SymmetricMatrix& links);
 
 // Velocities, positions, pressures, forces and accelerations of the leaflets from the solved pressure.
 template <int D>

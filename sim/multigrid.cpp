@@ -111,7 +111,6 @@ MultigridLevel coarsen(MultigridLevel& fine, std::vector<std::int32_t> of, std::
           }
         }
       }
-      std::sort(columns.begin(), columns.end());
       for (std::int32_t b : columns) {
         piece.column.push_back(b);
         piece.value.push_back(sums[b]);
@@ -169,44 +168,77 @@ std::vector<double> dense_inverse(const MultigridLevel& level, const std::vector
   return inverse;
 }
 
-// Sums of the matrix' rows: 0 where no pressure is given nearby. In double: sums of floats would lose them, and with them the one mode that
-// a closed region leaves open.
-std::vector<double> row_sums(const SymmetricMatrix& matrix) {
-  std::vector<double> sums(matrix.rows());
-#pragma omp parallel for schedule(static)
-  for (Index i = 0; i < static_cast<Index>(matrix.rows()); ++i) {
-    double sum = matrix.diagonal[i];
-    for (std::int64_t k = matrix.start[i]; k < matrix.start[i + 1]; ++k) sum += matrix.value[k];
-    sums[i] = std::abs(sum) > 1e-13 * matrix.diagonal[i] ? sum : 0;
-  }
-  return sums;
-}
-
 // Sorts each row's entries by where their columns lie (see MultigridLevel) and makes room for the scratch.
-void prepare(MultigridLevel& level) {
-  const Index n = static_cast<Index>(level.diagonal.size());
-  level.inverse_diagonal.resize(n), level.lower.resize(n), level.upper.resize(n);
-  level.x.resize(n), level.b.resize(n), level.r.resize(n);
-#pragma omp parallel if (n > serial)
-  {
-    std::vector<std::pair<std::int32_t, float>> before, after, other;
-#pragma omp for schedule(static)
-    for (Index i = 0; i < n; ++i) {
-      level.inverse_diagonal[i] = level.diagonal[i] > 0 ? 1.0f / level.diagonal[i] : 0.0f;
-      before.clear(), after.clear(), other.clear();
-      const Index first = i / block * block, last = first + block;
-      for (std::int64_t k = level.start[i]; k < level.start[i + 1]; ++k) {
-        const std::int32_t j = level.column[k];
-        (j < first || j >= last ? other : j < i ? before : after).emplace_back(j, level.value[k]);
-      }
-      std::int64_t k = level.start[i];
-      for (const auto* part : {&before, &after, &other}) {
-        for (const auto& [j, v] : *part) level.column[k] = j, level.value[k++] = v;
-        if (part == &before) level.lower[i] = k;
-        if (part == &after) level.upper[i] = k;
-      }
+struct RowParts {
+  std::vector<std::pair<std::int32_t, float>> before, after, other;
+  void clear() { before.clear(), after.clear(), other.clear(); }
+  void add(Index i, std::int32_t j, float value) {
+    const Index first = i / block * block;
+    (j < first || j >= first + block ? other : j < i ? before : after).emplace_back(j, value);
+  }
+  void write(MultigridLevel& level, Index i) const {
+    std::int64_t k = level.start[i];
+    for (const auto* part : {&before, &after, &other}) {
+      for (const auto& [j, v] : *part) level.column[k] = j, level.value[k++] = v;
+      if (part == &before) level.lower[i] = k;
+      if (part == &after) level.upper[i] = k;
     }
   }
+};
+void make_room(MultigridLevel& level, Index n) {
+  level.inverse_diagonal.resize(n), level.lower.resize(n), level.upper.resize(n);
+  level.x.resize(n), level.b.resize(n), level.r.resize(n);
+}
+float inverse_or_zero(float diagonal) { return diagonal > 0 ? 1.0f / diagonal : 0.0f; }
+
+void prepare(MultigridLevel& level) {
+  const Index n = static_cast<Index>(level.diagonal.size());
+  make_room(level, n);
+#pragma omp parallel if (n > serial)
+  {
+    RowParts parts;
+#pragma omp for schedule(static)
+    for (Index i = 0; i < n; ++i) {
+      level.inverse_diagonal[i] = inverse_or_zero(level.diagonal[i]);
+      parts.clear();
+      for (std::int64_t k = level.start[i]; k < level.start[i + 1]; ++k) parts.add(i, level.column[k], level.value[k]);
+      parts.write(level, i);
+    }
+  }
+}
+
+// The finest level, and the sums of the matrix' rows: 0 where no pressure is given nearby. In double: sums of floats would lose them, and
+// with them the one mode that a closed region leaves open.
+std::vector<double> make_finest(MultigridLevel& level, const SymmetricMatrix& matrix, const SymmetricMatrix* further) {
+  const Index n = static_cast<Index>(matrix.rows());
+  std::vector<double> sums(static_cast<std::size_t>(n));
+  make_room(level, n);
+  level.start = matrix.start;
+  level.diagonal.resize(n);
+  if (further)
+    for (Index i = 0; i <= n; ++i) level.start[i] += further->start[i];
+  level.column.resize(level.start[n]), level.value.resize(level.start[n]);
+#pragma omp parallel
+  {
+    RowParts parts;
+#pragma omp for schedule(static)
+    for (Index i = 0; i < n; ++i) {
+      double sum = matrix.diagonal[i];
+      parts.clear();
+      for (std::int64_t k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
+        sum += matrix.value[k];
+        parts.add(i, matrix.column[k], static_cast<float>(matrix.value[k]));
+      }
+      sums[i] = std::abs(sum) > 1e-13 * matrix.diagonal[i] ? sum : 0;
+      if (further)
+        for (std::int64_t k = further->start[i]; k < further->start[i + 1]; ++k)
+          parts.add(i, further->column[k], static_cast<float>(further->value[k]));
+      parts.write(level, i);
+      level.diagonal[i] = static_cast<float>(matrix.diagonal[i] + (further ? further->diagonal[i] : 0.0));
+      level.inverse_diagonal[i] = inverse_or_zero(level.diagonal[i]);
+    }
+  }
+  return sums;
 }
 
 float row_sum(const MultigridLevel& l, std::int64_t first, std::int64_t last) {
@@ -278,23 +310,16 @@ void cycle(Multigrid& mg, std::size_t depth) {
 
 }  // namespace
 
-void build_multigrid(Multigrid& mg, const SymmetricMatrix& matrix) {
+void build_multigrid(Multigrid& mg, const SymmetricMatrix& matrix, const SymmetricMatrix* further) {
   MultigridLevel finest;
   if (!mg.levels.empty()) finest = std::move(mg.levels.front());  // its room
   mg.levels.clear();
   mg.coarse_inverse.clear();
-  const Index n = static_cast<Index>(matrix.rows()), entries = static_cast<Index>(matrix.column.size());
-  finest.start = matrix.start;
-  finest.column.resize(entries), finest.value.resize(entries), finest.diagonal.resize(n);
-#pragma omp parallel for schedule(static)
-  for (Index k = 0; k < entries; ++k) finest.column[k] = matrix.column[k], finest.value[k] = static_cast<float>(matrix.value[k]);
-#pragma omp parallel for schedule(static)
-  for (Index i = 0; i < n; ++i) finest.diagonal[i] = static_cast<float>(matrix.diagonal[i]);
+  std::vector<double> sums = make_finest(finest, matrix, further);
   mg.levels.push_back(std::move(finest));
-  std::vector<double> sums = row_sums(matrix);
   for (;;) {
     MultigridLevel& fine = mg.levels.back();
-    prepare(fine);
+    if (mg.levels.size() > 1) prepare(fine);
     if (fine.diagonal.size() <= coarsest || mg.levels.size() >= 12) break;
     std::int32_t count = 0;
     std::vector<std::int32_t> of = aggregates(fine, count);

@@ -26,9 +26,9 @@ struct Multigrid {
   std::vector<double> coarse_inverse;  // dense inverse of the coarsest level (row major); empty where that level is too large for it
 };
 
-// Greedy aggregates over strong links (at least half the row's strongest). Entries of the matrix may be in any order. What `multigrid` held
-// is replaced, its room used again.
-void build_multigrid(Multigrid& multigrid, const SymmetricMatrix& matrix);
+// Greedy aggregates over strong links (at least half the row's strongest) of `matrix`, or of the sum of `matrix` and `further` (same rows).
+// Off-diagonal entries may be in any order. What `multigrid` held is replaced, its room used again.
+void build_multigrid(Multigrid& multigrid, const SymmetricMatrix& matrix, const SymmetricMatrix* further = nullptr);
 // z = M r: one V-cycle, a Gauss-Seidel sweep forward before and backward after, coarse corrections over-relaxed by 1.5; symmetric.
 void apply_multigrid(Multigrid& multigrid, std::span<const double> r, std::span<double> z);
 

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <memory>
+#include <utility>
 
 namespace sim {
 
@@ -29,9 +29,19 @@ namespace {
 template <int D>
 void lay_out(CellGrid<D>& grid, std::span<const Vector<D>> position, const Domain<D>& domain, double radius) {
   Vector<D> low = Vector<D>::Constant(1e300), high = Vector<D>::Constant(-1e300);
-  for (const auto& x : position) {
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
+#pragma omp parallel if (position.size() > 8192)
+  {
+    Vector<D> lowest = low, highest = high;
+#pragma omp for schedule(static) nowait
+    for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(position.size()); ++i) {
+      lowest = lowest.cwiseMin(position[i]);
+      highest = highest.cwiseMax(position[i]);
+    }
+#pragma omp critical
+    {
+      low = low.cwiseMin(lowest);
+      high = high.cwiseMax(highest);
+    }
   }
   grid.cell = radius;
   for (int k = 0; k < D; ++k) {
@@ -88,15 +98,36 @@ void fill_cells(CellGrid<D>& grid, std::span<const Vector<D>> position, const Do
   std::size_t total = 1;
   for (int k = 0; k < D; ++k) total *= static_cast<std::size_t>(grid.cells[k]);
   grid.cell_of.resize(position.size());
-  const std::ptrdiff_t n = static_cast<std::ptrdiff_t>(position.size());
-#pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t i = 0; i < n; ++i) grid.cell_of[i] = flat<D>(grid, coordinates(grid, position[i]));
-  grid.start.assign(total + 1, 0);
-  for (std::ptrdiff_t i = 0; i < n; ++i) ++grid.start[grid.cell_of[i] + 1];
-  for (std::size_t c = 0; c < total; ++c) grid.start[c + 1] += grid.start[c];
   grid.row.resize(position.size());
-  std::vector<std::int32_t> next(grid.start.begin(), grid.start.end() - 1);
-  for (std::ptrdiff_t i = 0; i < n; ++i) grid.row[next[grid.cell_of[i]]++] = static_cast<std::int32_t>(i);
+  grid.start.assign(total + 1, 0);
+  const std::ptrdiff_t n = static_cast<std::ptrdiff_t>(position.size());
+  // Each part of the rows is counted and dealt out by itself; the parts lie one behind the other in every cell, so that rows ascend in it.
+  const std::size_t most_parts = std::max<std::size_t>(1, 4 * position.size() / total);
+  const auto parts = static_cast<std::ptrdiff_t>(std::min<std::size_t>(static_cast<std::size_t>(omp_get_max_threads()), most_parts));
+  grid.next.assign(static_cast<std::size_t>(parts) * total, 0);
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t part = 0; part < parts; ++part) {
+    std::int32_t* count = grid.next.data() + static_cast<std::size_t>(part) * total;
+    for (std::ptrdiff_t i = n * part / parts; i < n * (part + 1) / parts; ++i) {
+      grid.cell_of[i] = flat<D>(grid, coordinates(grid, position[i]));
+      ++count[grid.cell_of[i]];
+    }
+  }
+  std::int32_t sum = 0;
+  for (std::size_t c = 0; c < total; ++c) {
+    grid.start[c] = sum;
+    for (std::ptrdiff_t part = 0; part < parts; ++part) {
+      std::int32_t& count = grid.next[static_cast<std::size_t>(part) * total + c];
+      sum += std::exchange(count, sum);
+    }
+  }
+  grid.start[total] = sum;
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t part = 0; part < parts; ++part) {
+    std::int32_t* next = grid.next.data() + static_cast<std::size_t>(part) * total;
+    for (std::ptrdiff_t i = n * part / parts; i < n * (part + 1) / parts; ++i)
+      grid.row[next[grid.cell_of[i]]++] = static_cast<std::int32_t>(i);
+  }
 }
 
 namespace {
@@ -120,7 +151,7 @@ struct Candidates {
   std::vector<std::int32_t> row;
   std::vector<std::uint8_t> is_fluid;
   std::vector<double> square;      // of the distance from the particle in turn, m²
-  std::vector<std::uint8_t> near;  // 1 where it is a neighbour; filled up with zeros to whole words
+  std::vector<std::uint8_t> near;  // 1 where it is a neighbour
   std::size_t own = 0;             // where the cell's own particles begin
   std::array<std::vector<int>, D> around;
 
@@ -146,45 +177,70 @@ struct Candidates {
         for (int j : around[1])
           for (int i : around[0]) add({i, j, k});
     }
-    for (int k = 0; k < D; ++k) x[k].resize(row.size());
-    is_fluid.resize(row.size()), square.resize(row.size()), near.assign((row.size() + 7) / 8 * 8, 0);
+    // Filled up to whole registers with candidates that are far from all.
+    const std::size_t whole = (row.size() + 7) / 8 * 8;
+    for (int k = 0; k < D; ++k) x[k].resize(whole), std::fill(x[k].begin() + static_cast<std::ptrdiff_t>(row.size()), x[k].end(), 1e150);
+    is_fluid.resize(whole), square.resize(whole), near.resize(whole);
     for (std::size_t m = 0; m < row.size(); ++m) {
       for (int k = 0; k < D; ++k) x[k][m] = position[row[m]][k];
       is_fluid[m] = fluid[row[m]];
     }
   }
 
-  void measure(const Vector<D>& from, const Periodicity<D>& space) {
-    const std::size_t count = row.size();
+  // Squared distances from `from` along periodic axes: the nearest image counts.
+  void measure_periodic(const Vector<D>& from, const Periodicity<D>& space) {
+    const std::size_t count = square.size();
     std::fill(square.begin(), square.end(), 0.0);
     double* result = square.data();
     for (int k = 0; k < D; ++k) {
       const double* at = x[k].data();
-      const double here = from[k], length = space.any ? space.length[k] : 0.0, half = 0.5 * length;
-      if (length > 0) {
+      const double here = from[k], length = space.length[k], half = length > 0 ? 0.5 * length : 1e300;
 #pragma omp simd
-        for (std::size_t m = 0; m < count; ++m) {
-          double r = at[m] - here;
-          r -= r > half ? length : 0.0;
-          r += r < -half ? length : 0.0;
-          result[m] += r * r;
-        }
-      } else {
-#pragma omp simd
-        for (std::size_t m = 0; m < count; ++m) result[m] += (at[m] - here) * (at[m] - here);
+      for (std::size_t m = 0; m < count; ++m) {
+        double r = at[m] - here;
+        r -= r > half ? length : 0.0;
+        r += r < -half ? length : 0.0;
+        result[m] += r * r;
       }
     }
   }
 
-  // Writes the rows nearer than the root of `within`, candidate `self` apart, to `to`; returns how many.
-  std::size_t select(double within, bool fluid_only, std::size_t self, std::int32_t* to) {
-    const std::size_t count = row.size();
+  // Marks the candidates nearer to `from` than the root of `within`.
+  void mark(const Vector<D>& from, double within, std::uint8_t any_kind) {
+    const std::size_t count = near.size();
+    const std::uint8_t* fluid = is_fluid.data();
+    std::uint8_t* chosen = near.data();
+    std::array<const double*, D> at;
+    const Vector<D> here = from;
+    for (int k = 0; k < D; ++k) at[k] = x[k].data();
+#pragma omp simd
+    for (std::size_t m = 0; m < count; ++m) {
+      double distance = 0;
+      for (int k = 0; k < D; ++k) distance += (at[k][m] - here[k]) * (at[k][m] - here[k]);
+      chosen[m] = static_cast<std::uint8_t>((distance < within) & (fluid[m] | any_kind));
+    }
+  }
+  void mark_measured(double within, std::uint8_t any_kind) {
+    const std::size_t count = near.size();
     const double* distance = square.data();
     const std::uint8_t* fluid = is_fluid.data();
     std::uint8_t* chosen = near.data();
-    const std::uint8_t any_kind = fluid_only ? 0 : 1;
 #pragma omp simd
     for (std::size_t m = 0; m < count; ++m) chosen[m] = static_cast<std::uint8_t>((distance[m] < within) & (fluid[m] | any_kind));
+  }
+
+  // Writes the rows nearer to `from` than the root of `within`, candidate `self` apart, to `to`; returns how many.
+  std::size_t select(const Vector<D>& from, const Periodicity<D>& space, double within, bool fluid_only, std::size_t self,
+                     std::int32_t* to) {
+    const std::size_t count = near.size();
+    std::uint8_t* chosen = near.data();
+    const std::uint8_t any_kind = fluid_only ? 0 : 1;
+    if (space.any) {
+      measure_periodic(from, space);
+      mark_measured(within, any_kind);
+    } else {
+      mark(from, within, any_kind);
+    }
     chosen[self] = 0;
     std::size_t found = 0;
     for (std::size_t m = 0; m < count; m += 8) {  // few are near: eight at a time are passed by
@@ -196,22 +252,17 @@ struct Candidates {
   }
 };
 
-// Rows found so far; grows by doubling, without setting what is written next anyway.
-struct FoundRows {
-  std::unique_ptr<std::int32_t[]> row;
-  std::size_t count = 0, room = 0;
-  std::int32_t* space_for(std::size_t more) {
-    if (count + more > room) {
-      room = std::max<std::size_t>(2 * room, count + more + 4096);
-      std::unique_ptr<std::int32_t[]> larger(new std::int32_t[room]);
-      std::copy(row.get(), row.get() + count, larger.get());
-      row = std::move(larger);
-    }
-    return row.get() + count;
-  }
-};
-
 }  // namespace
+
+std::int32_t* FoundRows::space_for(std::size_t more) {
+  if (count + more > room) {
+    room = std::max<std::size_t>(2 * room, count + more + 4096);
+    std::unique_ptr<std::int32_t[]> larger(new std::int32_t[room]);
+    std::copy(row.get(), row.get() + count, larger.get());
+    row = std::move(larger);
+  }
+  return row.get() + count;
+}
 
 template <int D>
 void find_neighbors(Neighbors& neighbors, CellGrid<D>& grid, std::span<const Vector<D>> position, std::span<const Search> search,
@@ -220,9 +271,12 @@ void find_neighbors(Neighbors& neighbors, CellGrid<D>& grid, std::span<const Vec
   const Periodicity<D> space = make_periodicity(domain);
   const std::size_t n = position.size();
   neighbors.start.assign(n + 1, 0);
-  std::vector<std::size_t> found_at(n);
-  const int chunks = omp_get_max_threads() * 8;
-  std::vector<FoundRows> found(chunks);
+  std::vector<std::size_t>& found_at = grid.found_at;
+  found_at.resize(n);
+  const int chunks = omp_get_max_threads() * 32;
+  std::vector<FoundRows>& found = grid.found;
+  found.resize(chunks);
+  for (FoundRows& list : found) list.count = 0;
   const std::size_t cells = grid.start.size() - 1;
   // Chunks of whole cells with about as many particles each.
   const auto first_cell = [&](int chunk) {
@@ -245,10 +299,9 @@ void find_neighbors(Neighbors& neighbors, CellGrid<D>& grid, std::span<const Vec
           if (search[i] == Search::none) continue;
           if (!gathered) candidates.gather(grid, position, is_fluid, cell);
           gathered = true;
-          candidates.measure(position[i], space);
           const std::size_t near =
-              candidates.select(square, search[i] == Search::fluid_only, candidates.own + static_cast<std::size_t>(m - grid.start[cell]),
-                                list.space_for(candidates.row.size()));
+              candidates.select(position[i], space, square, search[i] == Search::fluid_only,
+                                candidates.own + static_cast<std::size_t>(m - grid.start[cell]), list.space_for(candidates.row.size()));
           found_at[i] = list.count;
           neighbors.start[i + 1] = static_cast<std::int64_t>(near);
           list.count += near;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -58,6 +59,13 @@ struct Neighbors {
   }
 };
 
+// Rows found by one part of the search; grows by doubling, without setting what is written next anyway.
+struct FoundRows {
+  std::unique_ptr<std::int32_t[]> row;
+  std::size_t count = 0, room = 0;
+  std::int32_t* space_for(std::size_t more);
+};
+
 // Cells of at least a radius over the particles' bounding box.
 template <int D>
 struct CellGrid {
@@ -68,6 +76,9 @@ struct CellGrid {
   std::array<double, D> edge{};          // m, per axis (periodic axes fit a whole number)
   std::vector<std::int32_t> start, row;  // cell -> rows
   std::vector<std::int32_t> cell_of;     // row -> cell
+  std::vector<std::int32_t> next;        // scratch: per part of the rows and cell, where its next row goes
+  std::vector<FoundRows> found;          // scratch of the search
+  std::vector<std::size_t> found_at;
 };
 template <int D>
 void fill_cells(CellGrid<D>& grid, std::span<const Vector<D>> position, const Domain<D>& domain, double radius);

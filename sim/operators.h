@@ -45,16 +45,13 @@ double port_fraction(const Port<D>& port, const Vector<D>& x_i, const Vector<D>&
   return std::clamp(inside / (inside + outside), 0.2, 1.0);
 }
 
-// Inverse moment matrices of every fluid particle: M = d/n0 sum w r r^T / |r|². One over fluid and boundary (for velocities: the boundary
-// particle carries the value that makes the velocity at its true surface the surface's own), one over fluid alone (for pressure, so that a
-// linear pressure has its exact gradient beside a wall too). The identity where n < 0.6 n0; eigenvalues below `floor` are lifted to it.
-template <int D>
-void moment_matrices(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
-
-// grad v at every fluid particle from the current velocities; on the boundary v is the surface's own. Where the boundary layer is thinner
-// than a spacing (cell Reynolds number rho |v_t| l0 / mu of the slip above 20) the tangential jump counts in the ratio 20/Re, in an
-// inviscid fluid not at all: a layer that the particles cannot resolve would else appear as divergence. The trace is the divergence of
-// Eq (17), exact for linear fields.
+// In one pass over the neighbours of every fluid particle:
+// Inverse moment matrices, M = d/n0 sum w r r^T / |r|². One over fluid and boundary (for velocities: the boundary particle carries the
+// value that makes the velocity at its true surface the surface's own), one over fluid alone (for pressure, so that a linear pressure has
+// its exact gradient beside a wall too). The identity where n < 0.6 n0; eigenvalues below a floor (0.3, 0.1) are lifted to it. grad v from
+// the current velocities; on the boundary v is the surface's own. Where the boundary layer is thinner than a spacing (cell Reynolds number
+// rho |v_t| l0 / mu of the slip above 20) the tangential jump counts in the ratio 20/Re, in an inviscid fluid not at all: a layer that the
+// particles cannot resolve would else appear as divergence. The trace is the divergence of Eq (17), exact for linear fields.
 template <int D>
 void velocity_gradients(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
 

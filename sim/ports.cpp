@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/parallel.h"
 #include "sim/rheology.h"
 
 namespace sim {
@@ -16,30 +17,31 @@ template <int D>
 double height_outside(const Scene<D>& scene, const Port<D>& port, const Vector<D>& x) {
   const Vector<D> r = x - port.point;
   const double height = r.dot(port.normal);
-  const double aside = (r - height * port.normal).norm();
-  return aside <= port.radius + 0.5 * scene.description.spacing ? height : 1e300;
+  const double aside = (r - height * port.normal).squaredNorm(), reach = port.radius + 0.5 * scene.description.spacing;
+  return aside <= reach * reach ? height : 1e300;
 }
 
 // Cross-section of the opening, m² (2-D: m): port particles a layer times l0^(D-1).
 template <int D>
 double opening_area(const Scene<D>& scene, const State<D>& state, std::int32_t port) {
-  double count = 0;
-  for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i) count += state.port[i] == port;
+  const std::size_t first = static_cast<std::size_t>(scene.first_fluid);
+  const double count = ordered_sum(state.size() - first, [&](std::size_t k) { return state.port[first + k] == port ? 1.0 : 0.0; });
   return count / layers * std::pow(scene.description.spacing, D - 1);
 }
 
 // Mean inward speed of the blood within two spacings of the plane, m/s.
 template <int D>
 double speed_inside(const Scene<D>& scene, const State<D>& state, const Port<D>& port) {
-  double sum = 0, count = 0;
-  for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i) {
-    if (state.kind[i] != Kind::fluid) continue;
+  const std::size_t first = static_cast<std::size_t>(scene.first_fluid);
+  using SumAndCount = Eigen::Array2d;
+  const SumAndCount total = ordered_total(state.size() - first, SumAndCount(SumAndCount::Zero()), [&](std::size_t k) -> SumAndCount {
+    const std::size_t i = first + k;
+    if (state.kind[i] != Kind::fluid) return {0, 0};
     const double height = height_outside(scene, port, state.position[i]);
-    if (height > 0 || height < -2 * scene.description.spacing) continue;
-    sum -= state.velocity[i].dot(port.normal);
-    count += 1;
-  }
-  return count > 0 ? sum / count : 0;
+    if (height > 0 || height < -2 * scene.description.spacing) return {0, 0};
+    return {-state.velocity[i].dot(port.normal), 1};
+  });
+  return total[1] > 0 ? total[0] / total[1] : 0;
 }
 
 template <int D>
@@ -183,7 +185,8 @@ void wall_grip(const Scene<D>& scene, const State<D>& state, Workspace<D>& work)
   work.grip.assign(state.size(), 1.0f);
   for (const auto& port : scene.description.ports) {
     const double share = resolved_profile(scene, speed_inside(scene, state, port));
-    for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i) {
+#pragma omp parallel for schedule(static)
+    for (std::ptrdiff_t i = static_cast<std::ptrdiff_t>(scene.first_fluid); i < static_cast<std::ptrdiff_t>(state.size()); ++i) {
       if (state.kind[i] != Kind::fluid) continue;
       const double depth = -height_outside(scene, port, state.position[i]) / (layers * scene.description.spacing);
       if (depth < 0 || depth > 1) continue;

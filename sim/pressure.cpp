@@ -73,6 +73,18 @@ double acceleration_link(const Scene<D>& scene, const Workspace<D>& work, Index 
   return (a_j - a_i).dot(normal) * r.dot(normal);
 }
 
+// Whether all fluid bodies have the same density.
+template <int D>
+bool has_one_density(const Scene<D>& scene) {
+  double density = 0;
+  for (std::size_t b = 0; b < scene.density.size(); ++b) {
+    if (scene.description.bodies[b].kind != Kind::fluid) continue;
+    if (density > 0 && scene.density[b] != density) return false;
+    density = scene.density[b];
+  }
+  return true;
+}
+
 }  // namespace
 
 template <int D>
@@ -100,37 +112,41 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
   a.value.resize(a.start[unknowns]);
   const std::vector<Vector<D>> frames = falling_frames(scene, state, work);
   const Vector<D> at_rest = Vector<D>::Zero();
+  const auto first_fluid = static_cast<std::int32_t>(scene.first_fluid);
+  const bool one_density = has_one_density(scene);
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index u = 0; u < unknowns; ++u) {
     const Index i = work.unknown_row[u];
-    const double rho = scene.density[state.body[i]];
+    const double rho = scene.density[state.body[i]], own_factor = volume * k / rho;
     const bool at_surface = work.surface[i] == 1;
     std::int64_t entry = a.start[u];
     double diagonal = 0, divergence = 0, source = 0;
     bool beside_port = false;
     double fastest = closed ? work.velocity[i].squaredNorm() : 0;  // (m/s)², around i
+    const Padded<D> here = work.position[i];
+    const Vector<D> frame = frames.empty() ? at_rest : frames[i];
     for (std::int64_t e = work.neighbors.start[i]; e < work.neighbors.start[i + 1]; ++e) {
       const double w = work.link_weight[e];
       if (w == 0) continue;
       const std::int32_t j = work.neighbors.index[e];
       if (closed) fastest = std::max(fastest, work.velocity[j].squaredNorm());
-      if (j < scene.first_fluid && state.kind[j] == Kind::shell) continue;  // leaflet_coupling.cpp
-      const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
-      if (j >= scene.first_fluid && state.kind[j] == Kind::port) beside_port = true;
-      const bool port = j >= scene.first_fluid && state.kind[j] == Kind::port;
+      if (j < first_fluid && state.kind[j] == Kind::shell) continue;  // leaflet_coupling.cpp
+      const Vector<D> r = scene.space.difference(here, work.position[j]).template head<D>();
+      const bool port = j >= first_fluid && state.kind[j] == Kind::port;
+      beside_port = beside_port || port;
       if (port && !gives_pressure(scene.description.ports[state.port[j]])) continue;  // its speed at the new time is in grad v
-      divergence += k * w * acceleration_link<D>(scene, work, i, j, r, at_surface, frames.empty() ? at_rest : frames[i]);
-      if (j < scene.first_fluid) continue;
-      double c = volume * k * w * 2 / (rho + scene.density[state.body[j]]);
+      divergence += k * w * acceleration_link<D>(scene, work, i, j, r, at_surface, frame);
+      if (j < first_fluid) continue;
+      double c = one_density ? w * own_factor : volume * k * w * 2 / (rho + scene.density[state.body[j]]);
       if (port) c /= port_fraction<D>(scene.description.ports[state.port[j]], state.position[i], state.position[j]);
-      diagonal += c;
-      if (work.unknown[j] >= 0) {
-        a.column[entry] = work.unknown[j];
+      const std::int32_t column = work.unknown[j];
+      if (column >= 0) {
+        diagonal += c;
+        a.column[entry] = column;
         a.value[entry++] = -c;
-      } else if (port) {
+      } else if (port) {  // else an isolated drop, which takes no part
+        diagonal += c;
         source += c * state.pressure[j];
-      } else {
-        diagonal -= c;  // an isolated drop takes no part
       }
     }
     const double n = work.number_density[i];
@@ -204,8 +220,8 @@ SolveReport solve_pressure(const Scene<D>& scene, State<D>& state, Workspace<D>&
   Multigrid* multigrid = nullptr;
   if (unknowns > 400) {
     const StageClock clock(work.stage_times, Stage::multigrid_setup);
-    if (!work.coupling.empty()) matrix_for_multigrid(work, work.multigrid_matrix);
-    build_multigrid(work.multigrid, work.coupling.empty() ? work.matrix : work.multigrid_matrix);
+    if (!work.coupling.empty()) link_sides(work, work.side_links);
+    build_multigrid(work.multigrid, work.matrix, work.coupling.empty() ? nullptr : &work.side_links);
     multigrid = &work.multigrid;
   }
   const SchemeSettings& scheme = scene.description.scheme;

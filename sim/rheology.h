@@ -1,6 +1,8 @@
 // Viscosity of blood as a function of its shear rate (paper Eqs 8-10, 12, 13).
 #pragma once
 
+#include <span>
+
 #include "sim/scene_description.h"
 
 namespace sim {
@@ -18,6 +20,8 @@ double herschel_bulkley_viscosity(const HerschelBulkley& blood, double shear_rat
 // sqrt(tau) = sqrt(tau0) + sqrt(mu_inf g): mu = (sqrt(tau0/g) + sqrt(mu_inf))², Pa s, capped.
 double casson_viscosity(const Casson& blood, double shear_rate, double limit);
 double viscosity(const Rheology& rheology, double shear_rate, double limit);
+// The same for many shear rates, which their viscosities replace; the power law to 1e-15.
+void viscosities(const Rheology& rheology, std::span<double> shear_rate, double limit);
 bool shear_rate_matters(const Rheology& rheology);
 bool is_inviscid(const Rheology& rheology);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstring>
 
 #include "sim/shell.h"
 
@@ -21,13 +22,25 @@ struct Kinematics {
   double area_ratio = 1;  // current over rest area
 };
 
+// Through registers alone: a vector put together number by number could only be read again once all its stores are done.
+inline Padded<3> cross(const Padded<3>& a, const Padded<3>& b) {
+  typedef double Four __attribute__((vector_size(32)));
+  Four u, v;
+  std::memcpy(&u, a.data(), sizeof u);
+  std::memcpy(&v, b.data(), sizeof v);
+  const Four product = __builtin_shufflevector(u, u, 1, 2, 0, 3) * __builtin_shufflevector(v, v, 2, 0, 1, 3) -
+                       __builtin_shufflevector(u, u, 2, 0, 1, 3) * __builtin_shufflevector(v, v, 1, 2, 0, 3);
+  Padded<3> result;
+  std::memcpy(result.data(), &product, sizeof product);
+  return result;
+}
+
 inline Padded<2> normal_of(const std::array<Padded<2>, 2>& b, double& length) {
   length = std::sqrt(b[0].squaredNorm());
   return Padded<2>(-b[0].y(), b[0].x()) / std::max(length, 1e-300);
 }
 inline Padded<3> normal_of(const std::array<Padded<3>, 5>& b, double& length) {
-  Padded<3> n;
-  n << b[0][1] * b[1][2] - b[0][2] * b[1][1], b[0][2] * b[1][0] - b[0][0] * b[1][2], b[0][0] * b[1][1] - b[0][1] * b[1][0], 0;
+  const Padded<3> n = cross(b[0], b[1]);
   length = std::sqrt(n.squaredNorm());
   return n / std::max(length, 1e-300);
 }
@@ -57,16 +70,18 @@ void complete(const ShellElasticity<D>& shells, std::int32_t i, Kinematics<D>& k
 template <int D>
 Kinematics<D> kinematics(const ShellElasticity<D>& shells, const Padded<D>* x, std::int32_t i) {
   constexpr int count = terms<D>;
-  Kinematics<D> k;
-  for (auto& b : k.value) b.setZero();
+  std::array<Padded<D>, count> sum;
+  for (auto& b : sum) b.setZero();
   if (is_clamped(shells, i))
-    for (int a = 0; a < D - 1; ++a) k.value[a] = shells.held_tangent[i][a];
+    for (int a = 0; a < D - 1; ++a) sum[a] = shells.held_tangent[i][a];
   const Padded<D> center = x[i];
   const double* fit = &shells.fit[static_cast<std::size_t>(shells.start[i]) * count];
   for (std::int32_t p = shells.start[i]; p < shells.start[i + 1]; ++p, fit += count) {
     const Padded<D> d = x[shells.neighbor[p]] - center;
-    for (int t = 0; t < count; ++t) k.value[t] += fit[t] * d;
+    for (int t = 0; t < count; ++t) sum[t] += fit[t] * d;
   }
+  Kinematics<D> k;
+  k.value = sum;
   complete(shells, i, k);
   return k;
 }

@@ -23,16 +23,22 @@ struct Workspace {
   std::vector<Padded<D>> ahead;  // where x will be a relaxation time later by its speed along the normal: elastic forces are taken there
   std::vector<std::array<Padded<D>, terms<D>>> derivative;
   std::vector<std::uint8_t> limited;
+  std::vector<Padded<D>> outer, axis;  // the input's external force and added normal; empty where it has none
+  std::vector<double> pull;            // N, m_e N . a^n
 
-  Workspace(const ShellElasticity<D>& shells, std::span<const Vector<D>> position, std::span<const Vector<D>> velocity)
+  Workspace(const ShellElasticity<D>& shells, const ShellSubstepInput<D>& input, std::span<const Vector<D>> position,
+            std::span<const Vector<D>> velocity)
       : x(shells.size()),
         v(shells.size()),
         own(shells.size()),
-
         normal(shells.size()),
         mean(shells.size(), Padded<D>::Zero()),
         derivative(shells.size()),
         limited(shells.size(), 0) {
+    for (const Vector<D>& force : input.external_force) outer.push_back(pad<D>(force));
+    for (const Vector<D>& n : input.added_normal) axis.push_back(pad<D>(n));
+    for (std::size_t i = 0; i < input.added_mass.size(); ++i)
+      pull.push_back(input.added_mass[i] > 0 ? input.added_mass[i] * input.added_normal[i].dot(input.reference_acceleration[i]) : 0.0);
     for (std::size_t i = 0; i < shells.size(); ++i) {
       x[i] = pad<D>(position[i]);
       v[i] = pad<D>(velocity[i]);
@@ -55,25 +61,23 @@ void advance(const ShellElasticity<D>& shells, const Contact<D>* contact, const 
   if (contact) force += contact_kernel::gather_contact(*contact, i);
   work.mean[i] += dt * force;  // sub-steps differ in length
   const double mass = shells.mass[i], damping = shells.bodies[shells.body[i]].damping;
-  if (!input.external_force.empty()) force += pad<D>(input.external_force[i]);
+  if (!work.outer.empty()) force += work.outer[i];
   force -= (mass * damping) * work.v[i];
   Padded<D> change = force * (dt / mass);
-  if (!input.added_mass.empty() && input.added_mass[i] > 0) {
-    const Padded<D> n = pad<D>(input.added_normal[i]);
-    const double extra = input.added_mass[i], reference = input.added_normal[i].dot(input.reference_acceleration[i]);
-    change = (force * dt + n * (extra * reference * dt)) / mass;
+  if (!work.pull.empty() && input.added_mass[i] > 0) {
+    const Padded<D>& n = work.axis[i];
+    const double extra = input.added_mass[i];
+    change += n * (work.pull[i] * dt / mass);
     change -= n * (n.dot(change) * extra / (mass + extra));
   }
   Padded<D> v = work.v[i] + change;
-  for (int k = 0; k < D; ++k)
-    if (shells.fixed[i] >> k & 1) v[k] = 0;
+  if (shells.fixed[i])
+    for (int k = 0; k < D; ++k)
+      if (shells.fixed[i] >> k & 1) v[k] = 0;
   work.next_v[i] = v;
   work.next_x[i] = work.x[i] + v * dt;
   work.ahead[i] = work.next_x[i];
-  if (relaxation > 0 && !input.added_normal.empty()) {
-    const Padded<D> n = pad<D>(input.added_normal[i]);
-    work.ahead[i] += (relaxation * n.dot(v)) * n;
-  }
+  if (relaxation > 0 && !work.axis.empty()) work.ahead[i] += (relaxation * work.axis[i].dot(v)) * work.axis[i];
 }
 
 // Largest ratio by which the added mass slows the bending dashpot down: it is scaled for the heavier rows.
@@ -107,7 +111,7 @@ ShellSubstepReport shell_substeps(const ShellElasticity<D>& shells, Contact<D>* 
   if (shells.empty() || input.duration <= 0) return report;
   if (shells.substep_factor > 0.5) throw std::invalid_argument("scheme.elastic_substep above 0.5 of l0/c is unstable; use 0.35");
   const auto rows = static_cast<std::int32_t>(shells.size());
-  Workspace<D> work(shells, position, velocity);
+  Workspace<D> work(shells, input, position, velocity);
   double left = input.duration;
   const double dashpot_limit = dashpot_step_limit(shells);
   while (left > 1e-9 * input.duration) {

@@ -12,7 +12,8 @@ void shifting_displacement(const Scene<D>& scene, const State<D>& state, Workspa
   const double l0 = scene.lattice.spacing, strongest = scene.description.scheme.shifting;
   if (!(strongest > 0)) return;
   const double factor = l0 * l0 * scene.lattice.gradient_factor();
-  const double at_l0 = weight(l0, scene.lattice.radius, scene.lattice.closest());
+  const double radius = scene.lattice.radius, closest = scene.lattice.closest(), per_l0 = 1 / weight(l0, radius, closest);
+  const auto first_fluid = static_cast<std::int32_t>(scene.first_fluid);
   // A free surface that rests needs a little; in a full vessel what rests stays where it is.
   const double least = scene.sheet && !scene.pressure->free_surface ? 0.0 : 0.02;
   // Each shift leaves a divergence error of its own, which costs pressure noise in proportion to shift/dt²: between two ports 2.5 times the
@@ -21,16 +22,17 @@ void shifting_displacement(const Scene<D>& scene, const State<D>& state, Workspa
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index i = scene.first_fluid; i < n; ++i) {
     if (state.kind[i] != Kind::fluid || work.surface[i] == 1) continue;
+    const Padded<D> here = work.position[i];
     Padded<D> sum = Padded<D>::Zero(), to_surface = Padded<D>::Zero();
     double fastest = work.velocity[i].squaredNorm();
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
       const std::int32_t j = work.neighbors.index[k];
-      const Padded<D> r = scene.space.difference(work.position[i], work.position[j]);
-      const double distance = std::max(r.norm(), scene.lattice.closest());
-      const double w = weight(distance, scene.lattice.radius, scene.lattice.closest()) * (j < scene.first_fluid ? scene.measure[j] : 1.0);
-      const double q = w / at_l0, q2 = q * q;
-      sum += w / (distance * distance) * (1 + 0.2 * q2 * q2) * r;
-      if (j >= scene.first_fluid) fastest = std::max(fastest, work.velocity[j].squaredNorm());
+      const Padded<D> r = scene.space.difference(here, work.position[j]);
+      const double inverse = 1 / std::max(r.norm(), closest);
+      const double w = std::max(radius * inverse - 1, 0.0) * (j < first_fluid ? scene.measure[j] : 1.0);  // weight(), kernel.h
+      const double q = w * per_l0, q2 = q * q;
+      sum += w * (inverse * inverse) * (1 + 0.2 * q2 * q2) * r;
+      if (j >= first_fluid) fastest = std::max(fastest, work.velocity[j].squaredNorm());
       if (work.surface[j] == 1) to_surface += w * r;
     }
     Vector<D> outward = to_surface.template head<D>();
@@ -65,14 +67,16 @@ void add_subparticle_dissipation(const Scene<D>& scene, const State<D>& state, W
     if (state.kind[i] != Kind::fluid) continue;
     Padded<D> sum = Padded<D>::Zero();
     const DyadSum<D> gradient = work.gradient_columns[i];
+    const Padded<D> here = work.position[i], velocity = work.velocity[i];
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
       const double w = work.link_weight[k];
       const std::int32_t j = work.neighbors.index[k];
       if (w == 0 || j < scene.first_fluid) continue;
-      const Padded<D> r = scene.space.difference(work.position[i], work.position[j]), jump = work.velocity[j] - work.velocity[i];
-      Padded<D> smooth = Padded<D>::Zero();  // what the mean gradient explains of the jump
-      for (int d = 0; d < D; ++d) smooth += 0.5 * r[d] * (gradient.column[d] + work.gradient_columns[j].column[d]);
-      sum += w * jump.norm() * (jump - smooth);
+      const Padded<D> half = 0.5 * scene.space.difference(here, work.position[j]), jump = work.velocity[j] - velocity;
+      const DyadSum<D>& other = work.gradient_columns[j];
+      Padded<D> rough = jump;  // what the mean gradient does not explain of the jump
+      for (int d = 0; d < D; ++d) rough -= half[d] * (gradient.column[d] + other.column[d]);
+      sum += w * jump.norm() * rough;
     }
     work.acceleration[i] += factor * sum.template head<D>();
   }
@@ -95,7 +99,9 @@ void separate_particles(const Scene<D>& scene, State<D>& state, Workspace<D>& wo
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
       const std::int32_t j = work.neighbors.index[k];
       const Vector<D> r = scene.space.difference(state.position[i], state.position[j]);
-      const double distance = r.norm();
+      const double square = r.squaredNorm();
+      if (square >= (j >= scene.first_fluid ? 0.49 : 1.44) * l0 * l0) continue;  // most are
+      const double distance = std::sqrt(square);
       if (j >= scene.first_fluid) {
         if (distance >= 0.7 * l0 || work.link_weight[k] == 0) continue;
         const Vector<D> along =

@@ -132,7 +132,6 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, std:
     wall_grip(scene, state, work);
   });
   timed(clocks, Stage::velocity_gradients, [&] {
-    moment_matrices(scene, state, work);
     velocity_gradients(scene, state, work);
     body_accelerations(scene, state, work);
     if (scene.description.scheme.subparticle_dissipation > 0) add_subparticle_dissipation(scene, state, work);
@@ -243,7 +242,8 @@ StepReport step(const Scene<D>& scene, State<D>& state, Workspace<D>& work, doub
   report.limited_by = limit.name;
   constexpr std::int64_t sorting_interval = 32;  // steps; particles pass a cell in some hundred
   if (scene.pressure && state.step % sorting_interval == 0) sort_by_cells(scene, state);
-  const State<D> before = state;
+  work.before = state;
+  const State<D>& before = work.before;
   for (;;) {
     try {
       move_walls(scene, state, dt);

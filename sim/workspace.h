@@ -62,7 +62,7 @@ struct Workspace {
   std::vector<std::int32_t> unknown;      // row -> unknown, -1
   std::vector<std::int32_t> unknown_row;  // unknown -> row
   SymmetricMatrix matrix;
-  SymmetricMatrix multigrid_matrix;  // with the leaflets' strongest links; empty without leaflets
+  SymmetricMatrix side_links;  // what the leaflets add to the multigrid's matrix (leaflet_coupling.h)
   std::vector<double> source, solution;
   Multigrid multigrid;
   ConjugateGradientScratch scratch;
@@ -93,11 +93,21 @@ struct Workspace {
     std::int32_t unknown;
     double weight;
   };
-  std::vector<std::vector<WetLink>> wetting;  // face 2 s + side: blood that wets shell row s on its + (0) or - (1) side, weights sum to 1
-  std::vector<double> support;                // fluid rows: 1, or less where leaflets hide so much of the blood around that its volume
-                                              // balance cannot be told (0 below 0.25 n0 of visible blood, 1 above 0.5 n0)
-  std::vector<double> wet_share;              // face: 1 wet, 0 dry
-  GapFilm film;                               // pressure on the faces that are not fully wet
+  // Blood that wets face f = 2 s + side of shell row s, side 0 where its normal points, 1 the other: wetting[wet_start[f]] …
+  // wetting[wet_start[f + 1] - 1], weights sum to 1.
+  std::vector<std::int32_t> wet_start;
+  std::vector<WetLink> wetting;
+  // The same by unknown: those that wet any face, ascending, and each one's faces.
+  struct WetFace {
+    std::int32_t face;
+    double weight;
+  };
+  std::vector<std::int32_t> wet_unknown, wet_unknown_start;
+  std::vector<WetFace> wet_faces;
+  std::vector<double> support;    // fluid rows: 1, or less where leaflets hide so much of the blood around that its volume
+                                  // balance cannot be told (0 below 0.25 n0 of visible blood, 1 above 0.5 n0)
+  std::vector<double> wet_share;  // face: 1 wet, 0 dry
+  GapFilm film;                   // pressure on the faces that are not fully wet
   struct Coupling {
     std::int32_t shell;  // shell row
     double strength;     // A²/m, m⁴/kg
@@ -112,6 +122,7 @@ struct Workspace {
   std::vector<double> shell_area, shell_normal_mass;  // m², kg: that moves along the normal, with the blood that follows
   std::vector<Vector<D>> boundary_force;              // rows of solids and shells: the blood's drag, N
 
+  State<D> before;         // the step's start, to which a refused step goes back
   StageTimes stage_times;  // of this run
 };
 

@@ -28,7 +28,6 @@ Prepared jittered_tank(double radius) {
   for (std::size_t i = static_cast<std::size_t>(p.scene.first_fluid); i < p.state.size(); ++i)
     p.state.position[i] += Vector<2>(jitter(random), jitter(random));
   find_neighborhood(p.scene, p.state, p.work);
-  moment_matrices(p.scene, p.state, p.work);
   return p;
 }
 
@@ -62,7 +61,6 @@ TEST(Operators, UnresolvedSlipIsNoDivergence) {
   for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i) state.velocity[i] = Vector<2>(2, 0);
   Workspace<2> work;
   find_neighborhood(scene, state, work);
-  moment_matrices(scene, state, work);
   velocity_gradients(scene, state, work);
   for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i)
     if (state.position[i][0] > 0.35 && state.position[i][0] < 0.85) {
