@@ -109,27 +109,23 @@ double resolved_profile(const Scene<D>& scene, double speed) {
   for (const auto& body : scene.description.bodies)
     if (body.kind == Kind::fluid) kinematic = std::max(kinematic, viscosity(body.fluid.rheology, 100.0, 1.0) / body.fluid.density);
   const double reynolds = std::abs(speed) * scene.description.spacing / std::max(kinematic, 1e-300);
-  return 1 / (1 + std::pow(reynolds / 20, 4));
+  return 1 / (1 + reynolds * reynolds / 100);
 }
 
-// Speed of each particle of a port whose pressure is given: the blood's own straight behind it, layer by layer outward, along the port's
-// normal and never against the mean flow; `local` in [0, 1] is how much of the local difference from the mean speed is kept. `sheet` holds
-// the port's rows by increasing height. Straight behind: an average over the whole kernel would flatten the profile from layer to layer,
-// and the inflow would have to become parabolic again at the cost of pressure.
+// Speed of each particle of a port whose pressure is given: the blood's own beside it, layer by layer outward, along the port's normal and
+// never against the mean flow; `local` in [0, 1] is how much of the local difference from the mean speed is kept. `sheet` holds the port's
+// rows by increasing height.
 template <int D>
-void extrapolate_speed(State<D>& state, const Workspace<D>& work, const Port<D>& port, double spacing, double mean, double local,
+void extrapolate_speed(State<D>& state, const Workspace<D>& work, const Port<D>& port, double mean, double local,
                        const std::vector<std::pair<double, std::size_t>>& sheet) {
   for (const auto& [height, i] : sheet) {
     double sum = 0, weights = 0;
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
       const auto j = static_cast<std::size_t>(work.neighbors.index[k]);
       if (state.kind[j] != Kind::fluid && (state.kind[j] != Kind::port || state.port[j] != state.port[i])) continue;
-      const Vector<D> r = state.position[j] - state.position[i];
-      const double rise = r.dot(port.normal), aside = (r - rise * port.normal).squaredNorm();
-      if (rise >= 0) continue;
-      const double weight = work.link_weight[k] * std::exp(-aside / (0.25 * spacing * spacing));
-      sum -= weight * state.velocity[j].dot(port.normal);
-      weights += weight;
+      if ((state.position[j] - port.point).dot(port.normal) >= height) continue;
+      sum -= work.link_weight[k] * state.velocity[j].dot(port.normal);
+      weights += work.link_weight[k];
     }
     double speed = weights > 0 ? sum / weights : mean;
     if (speed * mean < 0) speed = 0;
@@ -174,7 +170,7 @@ void prescribe_ports(const Scene<D>& scene, State<D>& state, const Workspace<D>*
       state.velocity[i] = -speed * port.normal;
       state.pressure[i] = pressure;
     }
-    if (local) extrapolate_speed(state, *work, port, scene.description.spacing, speed, resolved_profile(scene, speed), sheet);
+    if (local) extrapolate_speed(state, *work, port, speed, resolved_profile(scene, speed), sheet);
   }
 }
 
