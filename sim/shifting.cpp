@@ -16,13 +16,17 @@ void shifting_displacement(const Scene<D>& scene, const State<D>& state, Workspa
   const auto first_fluid = static_cast<std::int32_t>(scene.first_fluid);
   // A free surface that rests needs a little; in a full vessel what rests stays where it is.
   const double least = scene.sheet && !scene.pressure->free_surface ? 0.0 : 0.02;
-  // Where blood neither comes nor goes, no leaflet sheds it and viscosity orders it cell by cell (|v| l0 / nu below 2), particles cluster
-  // slowly, and a third of the shift that else keeps them even is enough; all of it stirs a pipe's blood until it flows 1.3 % too fast.
+  // The strongest shift of particle i. Where blood neither comes nor goes, no leaflet sheds it, viscosity orders it cell by cell (|v| l0/nu
+  // below 2) and layers slide on one another (strain and spin alike), half of it keeps particles even; all of it stirs a pipe's blood until
+  // it flows 1.9 % too fast. Where strain or spin prevails, particles cluster, and all of it is wanted.
   const bool calm = !scene.sheet && scene.description.ports.empty() && scene.viscosity;
-  const auto pace = [&](Index i, double speed) {
-    if (!calm) return 3.0;
+  const auto most = [&](Index i, double speed) {
+    if (!calm) return strongest;
     const double cell = scene.density[state.body[i]] * speed * l0 / std::max(work.viscosity[i], 1e-300);  // Reynolds number
-    return 3 - 2 / (1 + std::pow(0.5 * cell, 4));
+    const Tensor<D>& gradient = work.velocity_gradient[i];
+    const double strain = (gradient + gradient.transpose()).squaredNorm(), spin = (gradient - gradient.transpose()).squaredNorm();
+    const double layered = strain + spin > 0 ? 1 - std::abs(strain - spin) / (strain + spin) : 1.0;
+    return strongest * (1 - 0.5 * layered / (1 + std::pow(0.5 * cell, 4)));
   };
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index i = scene.first_fluid; i < n; ++i) {
@@ -41,7 +45,8 @@ void shifting_displacement(const Scene<D>& scene, const State<D>& state, Workspa
       if (work.surface[j] == 1) to_surface += w * r;
     }
     Vector<D> outward = to_surface.template head<D>();
-    const double strength = std::min(strongest, least + pace(i, std::sqrt(fastest)) * std::sqrt(fastest) * dt / l0);
+    const double speed = std::sqrt(fastest);
+    const double strength = std::min(most(i, speed), least + 3 * speed * dt / l0);
     Vector<D> shift = -factor * strength * sum.template head<D>();
     if (work.surface[i] == 2 && outward.squaredNorm() > 0) {
       outward.normalize();
