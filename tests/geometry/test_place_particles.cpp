@@ -349,7 +349,9 @@ TEST(PlaceParticles, ThinFlapsTakeFromBothSidesAlike) {
   volume.insert(volume.end(), options.obstacle_volume.begin(), options.obstacle_volume.end());
   const Evenness even = measure_evenness(all, volume, 2, l0);
   for (std::size_t i = 0; i < fluid.size(); ++i)
-    if (fluid.position[i].x() > -0.012 && fluid.position[i].x() < 0.02) EXPECT_NEAR(even.density[i], 1, 0.05) << fluid.position[i];
+    if (fluid.position[i].x() > -0.012 && fluid.position[i].x() < 0.02) {
+      EXPECT_NEAR(even.density[i], 1, 0.05) << fluid.position[i];
+    }
 }
 
 TEST(PlaceParticles, SameParticlesForAnyNumberOfThreadsAndRepeat) {

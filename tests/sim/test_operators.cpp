@@ -113,7 +113,6 @@ TEST(ParticleViscosity, OfALinkIsThatAtTheMeanRate) {
   for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i)
     state.velocity[i] = Vector<2>(0.05 * std::pow(state.position[i][1] + 1, 2), 0);  // rate 0.1 (y + 1)
   find_neighborhood(scene, state, work);
-  moment_matrices(scene, state, work);
   velocity_gradients(scene, state, work);
   particle_viscosity(scene, state, work);
   ASSERT_EQ(work.pair_viscosity.size(), work.neighbors.index.size());
