@@ -61,6 +61,8 @@ void refuse(const Spot& spot, const std::string& problem, const std::string& men
   if (!spot.key.empty()) line += spot.key + ": ";
   line += problem;
   if (!mend.empty()) line += "; " + mend;
+  for (char& c : line)  // a name may hold what would end the line, or write over it
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
   throw SceneError(line);
 }
 
