@@ -11,7 +11,7 @@
 #include "app/assets.h"
 #include "app/case_grid.h"
 #include "app/scene_table.h"
-#include "sim/particles.h"
+#include "app/stability_measures.h"
 #include "sim/run_file.h"
 
 namespace app {
@@ -24,6 +24,7 @@ struct Cell {
   std::string name, scene, vary, value, expect;
   std::vector<std::string> set, twin_set;  // twin: a second run that has to end alike
   bool fast = false, twin = false, restart = false;
+  bool slow = false;                // run only where it is named
   bool overloaded = false;          // has to be told: the load is more than the law bears
   double speed = infinite;          // m/s, any particle at any row
   double end_speed = infinite;      // m/s at the end (rest)
@@ -32,13 +33,15 @@ struct Cell {
   double energy = 0.05;             // growth beyond the work done, share of the energy that went through; infinite: not judged
   double twin_apart = 1e-6;         // l0, between the runs' last frames
   double leaflet_speed = infinite;  // m/s, any leaflet particle in the last frame
+  double repeat = infinite;         // beats_apart of orifice and flow through the valve
   double leak = infinite;           // through the closed valve over the run's second half, share of 70 ml a beat of 0.8 s
 };
 
 Cell read_cell(const toml::table& table, const std::string& path) {
-  const TableReader reader(table, path, {"name",     "scene",      "vary",          "value", "expect",     "set",           "twin",
-                                         "twin_set", "restart",    "fast",          "speed", "end_speed",  "density_error", "penetration",
-                                         "energy",   "twin_apart", "leaflet_speed", "leak",  "overloaded", "energy_judged"});
+  const TableReader reader(table, path,
+                           {"name",          "scene", "vary",       "value",         "expect",        "set",         "twin",   "twin_set",
+                            "restart",       "fast",  "speed",      "end_speed",     "density_error", "penetration", "energy", "twin_apart",
+                            "leaflet_speed", "leak",  "overloaded", "energy_judged", "repeat",        "slow"});
   Cell cell;
   cell.name = reader.text("name"), cell.scene = reader.text("scene"), cell.vary = reader.text("vary"), cell.value = reader.text("value");
   cell.expect = reader.choice("expect", {"holds", "refused"}, "holds");
@@ -46,6 +49,7 @@ Cell read_cell(const toml::table& table, const std::string& path) {
   if (reader.has("twin_set")) cell.twin_set = reader.texts("twin_set");
   cell.twin = reader.flag("twin", reader.has("twin_set")), cell.restart = reader.flag("restart", false);
   cell.fast = reader.flag("fast", false), cell.overloaded = reader.flag("overloaded", false);
+  cell.slow = reader.flag("slow", false), cell.repeat = reader.number("repeat", positive, cell.repeat);
   cell.leaflet_speed = reader.number("leaflet_speed", positive, cell.leaflet_speed), cell.leak = reader.number("leak", positive, cell.leak);
   cell.speed = reader.number("speed", positive, cell.speed), cell.end_speed = reader.number("end_speed", positive, cell.end_speed);
   cell.density_error = reader.number("density_error", positive, cell.density_error);
@@ -72,112 +76,11 @@ std::string last_line(const std::filesystem::path& file) {
   return last;
 }
 
-// The series by column name.
-struct Series {
-  std::map<std::string, std::vector<double>> columns;
-  explicit Series(const sim::RunReader& run) {
-    for (const auto& row : run.series())
-      for (std::size_t k = 0; k < row.size(); ++k) columns[run.header().columns[k]].push_back(row[k]);
-  }
-  double first(const std::string& name) const {
-    const auto found = columns.find(name);
-    return found == columns.end() || found->second.empty() ? 0 : found->second.front();
-  }
-  double last(const std::string& name) const {
-    const auto found = columns.find(name);
-    return found == columns.end() || found->second.empty() ? 0 : found->second.back();
-  }
-  double largest(const std::string& name) const {
-    const auto found = columns.find(name);
-    return found == columns.end() || found->second.empty() ? 0 : *std::max_element(found->second.begin(), found->second.end());
-  }
-};
-
-// Kinetic energy of all blood at a centimetre a second, J (2-D: J/m): motion that counts as rest.
-double energy_at_rest(const sim::RunReader& run) {
-  const sim::RunFrame frame = run.frame(0);
-  double particles = 0;
-  for (std::uint8_t kind : frame.kind) particles += kind == static_cast<std::uint8_t>(sim::Kind::fluid);
-  constexpr double density = 1000, speed = 0.01;
-  return 0.5 * density * particles * std::pow(run.header().spacing, run.header().dimension) * speed * speed;
-}
-
-// Largest growth of kinetic and elastic energy beyond the work of ports and loads, as a share of the largest energy or work there was, at
-// least `rest` (of a state of rest anything would be a large share).
-double energy_growth(const Series& series, double rest) {
-  const auto at = [&](const char* name, std::size_t row) {
-    const auto found = series.columns.find(name);
-    return found == series.columns.end() ? 0.0 : found->second[row];
-  };
-  const std::size_t rows = series.columns.at("time").size();
-  double growth = 0, scale = rest;
-  const double first = at("kinetic_energy", 0) + at("elastic_energy", 0);
-  for (std::size_t row = 0; row < rows; ++row) {
-    const double energy = at("kinetic_energy", row) + at("elastic_energy", row), work = at("port_work", row) + at("load_work", row);
-    growth = std::max(growth, energy - first - work);
-    scale = std::max({scale, energy, std::abs(work)});
-  }
-  return scale > 0 ? growth / scale : 0;
-}
-
-// The fastest leaflet particle of a frame, m/s.
-double leaflet_speed(const sim::RunFrame& frame) {
-  double fastest = 0;
-  for (std::size_t i = 0; i < frame.size(); ++i)
-    if (frame.kind[i] == static_cast<std::uint8_t>(sim::Kind::shell))
-      fastest = std::max(fastest, double(std::hypot(frame.velocity[i][0], frame.velocity[i][1], frame.velocity[i][2])));
-  return fastest;
-}
-
-// What leaks back through a patient's closed valve in the second half of a run, as a share of a stroke of 70 ml, for a beat of 0.8 s.
-double leak(const Series& series) {
-  const auto &time = series.columns.at("time"), &in = series.columns.at("port.aorta.volume"),
-             &out = series.columns.at("port.ventricle.volume");
-  const std::size_t half = time.size() / 2;
-  const double volume = 0.5 * ((in.back() - in[half]) - (out.back() - out[half]));
-  constexpr double beat = 0.8, stroke = 70e-6;  // s, m³
-  return std::abs(volume) / (time.back() - time[half]) * beat / stroke;
-}
-
-bool finite(const sim::RunFrame& frame) {
-  for (std::size_t i = 0; i < frame.size(); ++i) {
-    for (double x : frame.position[i])
-      if (!std::isfinite(x)) return false;
-    for (float v : frame.velocity[i])
-      if (!std::isfinite(v)) return false;
-    if (!std::isfinite(frame.pressure[i]) || !std::isfinite(frame.von_mises[i])) return false;
-  }
-  return true;
-}
-
-// Largest distance between the same particles in the last frames of two runs, m; infinite where they do not hold the same.
-double apart(const std::filesystem::path& first, const std::filesystem::path& second) {
-  const sim::RunReader a(first), b(second);
-  const sim::RunFrame p = a.frame(a.frame_count() - 1), q = b.frame(b.frame_count() - 1);
-  if (p.time != q.time || p.size() != q.size()) return infinite;
-  std::map<std::int64_t, std::size_t> row;
-  for (std::size_t i = 0; i < q.size(); ++i) row[q.id[i]] = i;
-  double result = 0;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const auto found = row.find(p.id[i]);
-    if (found == row.end()) return infinite;
-    for (std::size_t axis = 0; axis < 3; ++axis) result = std::max(result, std::abs(p.position[i][axis] - q.position[found->second][axis]));
-  }
-  return result;
-}
-
 std::string number(double value, int digits = 3) {
   std::ostringstream out;
   out.precision(digits);
   out << value;
   return out.str();
-}
-
-// What the run's warnings say of overloaded leaflets; "" where they are not.
-std::string overload_told(const sim::RunReader& run) {
-  for (const std::string& line : run.warnings())
-    if (line.rfind("overloaded: ", 0) == 0) return line;
-  return "";
 }
 
 // The measured invariants, and what is wrong with them ("" = nothing).
@@ -208,6 +111,12 @@ std::string judge(const Cell& cell, const sim::RunReader& run, json& result) {
   if (std::isfinite(cell.leaflet_speed)) {
     result["leaflet_speed"] = leaflet_speed(run.frame(run.frame_count() - 1));
     bound("leaflets' speed at the end in m/s", result["leaflet_speed"], cell.leaflet_speed);
+  }
+  if (std::isfinite(cell.repeat)) {
+    constexpr double beat = 0.8;  // s, of the default patient
+    result["orifice_repeat"] = beats_apart(series, "orifice_area", beat), result["flow_repeat"] = beats_apart(series, "valve_flow", beat);
+    bound("orifice from beat to beat", result["orifice_repeat"], cell.repeat);
+    bound("flow from beat to beat", result["flow_repeat"], cell.repeat);
   }
   if (std::isfinite(cell.leak)) {
     result["leak"] = leak(series);
@@ -346,8 +255,8 @@ json run_stability(const StabilityOptions& options) {
     if (std::find(names.begin(), names.end(), name) == names.end())
       throw SceneError("cusp validate --stability: no cell \"" + name + "\"; --list shows them");
   const auto left_out = [&](const Cell& cell) {
-    return (options.fast && !cell.fast) ||
-           (!options.cells.empty() && std::find(options.cells.begin(), options.cells.end(), cell.name) == options.cells.end());
+    const bool named = std::find(options.cells.begin(), options.cells.end(), cell.name) != options.cells.end();
+    return (options.fast && !cell.fast) || (cell.slow && !named && !options.list) || (!options.cells.empty() && !named);
   };
   cells.erase(std::remove_if(cells.begin(), cells.end(), left_out), cells.end());
   json all{{"cases", json::array()}, {"counts", {{"pass", 0}, {"degraded", 0}, {"refused", 0}, {"fail", 0}}}};
