@@ -33,18 +33,14 @@ void count_rows(Scene<D>& scene) {
     scene.measure[i] = particles.kind[i] == Kind::shell ? std::min(1.0, particles.volume[i] / std::pow(l0, D - 1)) : 1.0;
 }
 
-// A fluid that the lattice fits with a pitch other than l0 (a length that l0 does not divide) has particles of another volume; so has its
-// undisturbed number density, n0 ~ 1/V, which a full fluid must not be pulled away from. Not among leaflets, which swallow blood particle
-// by particle, nor below a free surface, where fluid arranges itself anew.
+// A fluid that the lattice fits with a pitch other than l0 (a length that l0 does not divide) has particles of another volume. Among
+// leaflets, which swallow blood particle by particle: l0^D.
 template <int D>
-void fit_fluid_volume(Scene<D>& scene) {
+double fluid_particle_volume(const Scene<D>& scene, bool leaflets) {
   const auto& particles = scene.description.particles;
-  const double cell = std::pow(scene.description.spacing, D);
   double volume = 0, count = 0;
   for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < particles.size(); ++i) volume += particles.volume[i], count += 1;
-  if (!(volume > 0)) return;
-  scene.fluid_particle_volume = volume / count;
-  scene.lattice.number_density *= cell / scene.fluid_particle_volume;
+  return leaflets || !(volume > 0) ? std::pow(scene.description.spacing, D) : volume / count;
 }
 
 template <int D>
@@ -104,7 +100,7 @@ Scene<D> make_scene(SceneDescription<D> description) {
   scene.space = make_periodicity(description.domain);
   scene.description = std::move(description);
   count_rows(scene);
-  scene.fluid_particle_volume = std::pow(scene.description.spacing, D);
+  scene.fluid_particle_volume = fluid_particle_volume(scene, shells);
   scene.back_depth = far_faces(scene);
   if (fluid) scene.curvature = wall_curvatures(scene);
   const SceneDescription<D>& d = scene.description;
@@ -146,7 +142,9 @@ Scene<D> make_scene(SceneDescription<D> description) {
     const auto fluid_count = static_cast<double>(state.size() - static_cast<std::size_t>(scene.first_fluid));
     // A few gaps in a full vessel are no surface, unless they are half of the fluid.
     scene.pressure->free_surface = surface > std::min(std::max(4.0, 0.002 * fluid_count), 0.5 * fluid_count);
-    if (!scene.pressure->free_surface && !shells) fit_fluid_volume(scene);
+    // The undisturbed number density n0 ~ 1/V, which a full fluid must not be pulled away from. Below a free surface fluid arranges itself
+    // anew, and would be pressed apart.
+    if (!scene.pressure->free_surface) scene.lattice.number_density *= std::pow(d.spacing, D) / scene.fluid_particle_volume;
     for (const auto& port : d.ports)
       scene.pressure->anchored |= port.condition == PortCondition::pressure || port.condition == PortCondition::windkessel;
     scene.pressure->anchored |= scene.pressure->free_surface;
