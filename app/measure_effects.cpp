@@ -42,13 +42,13 @@ template <int D>
 std::int64_t scratch_bytes(const sim::Workspace<D>& w) {
   return bytes_of_all(w.neighbors.start, w.neighbors.index, w.search, w.is_fluid, w.link_weight, w.boundary_normal, w.boundary_velocity,
                       w.number_density, w.surface, w.surface_outward, w.velocity_inverse, w.pressure_inverse, w.velocity_gradient,
-                      w.viscosity, w.grip, w.acceleration, w.pressure_gradient, w.displacement, w.velocity_old, w.unknown, w.unknown_row,
-                      w.matrix.diagonal, w.matrix.start, w.matrix.column, w.matrix.value, w.source, w.solution, w.viscous_matrix.diagonal,
-                      w.viscous_matrix.start, w.viscous_matrix.column, w.viscous_matrix.value, w.viscous_source, w.viscous_solution,
-                      w.solid_position, w.solid_velocity, w.solid_link_start, w.solid_links, w.near_sheet, w.wet_start, w.wetting,
-                      w.wet_unknown, w.wet_unknown_start, w.wet_faces, w.support, w.wet_share, w.coupling, w.side_memory, w.shell_position,
-                      w.shell_velocity, w.shell_normal, w.shell_mean_force, w.shell_outer_force, w.shell_free_velocity, w.shell_area,
-                      w.shell_normal_mass, w.boundary_force);
+                      w.viscosity, w.pair_viscosity, w.boundary_curvature, w.grip, w.acceleration, w.pressure_gradient, w.displacement,
+                      w.velocity_old, w.unknown, w.unknown_row, w.matrix.diagonal, w.matrix.start, w.matrix.column, w.matrix.value,
+                      w.source, w.solution, w.viscous_matrix.diagonal, w.viscous_matrix.start, w.viscous_matrix.column,
+                      w.viscous_matrix.value, w.viscous_source, w.viscous_solution, w.solid_position, w.solid_velocity, w.solid_link_start,
+                      w.solid_links, w.near_sheet, w.wet_start, w.wetting, w.wet_unknown, w.wet_unknown_start, w.wet_faces, w.support,
+                      w.wet_share, w.coupling, w.side_memory, w.shell_position, w.shell_velocity, w.shell_normal, w.shell_mean_force,
+                      w.shell_outer_force, w.shell_free_velocity, w.shell_area, w.shell_normal_mass, w.boundary_force);
 }
 
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "app/scene_table.h"
 #include "sim/particles.h"
 
 namespace app {
@@ -28,7 +28,6 @@ double Series::largest(const std::string& name) const {
   return found == columns.end() || found->second.empty() ? 0 : *std::max_element(found->second.begin(), found->second.end());
 }
 
-// Kinetic energy of all blood at a centimetre a second, J (2-D: J/m): motion that counts as rest.
 double energy_at_rest(const sim::RunReader& run) {
   const sim::RunFrame frame = run.frame(0);
   double particles = 0;
@@ -37,8 +36,6 @@ double energy_at_rest(const sim::RunReader& run) {
   return 0.5 * density * particles * std::pow(run.header().spacing, run.header().dimension) * speed * speed;
 }
 
-// Largest growth of kinetic and elastic energy beyond the work of ports and loads, as a share of the largest energy or work there was, at
-// least `rest` (of a state of rest anything would be a large share).
 double energy_growth(const Series& series, double rest) {
   const auto at = [&](const char* name, std::size_t row) {
     const auto found = series.columns.find(name);
@@ -55,7 +52,6 @@ double energy_growth(const Series& series, double rest) {
   return scale > 0 ? growth / scale : 0;
 }
 
-// The fastest leaflet particle of a frame, m/s.
 double leaflet_speed(const sim::RunFrame& frame) {
   double fastest = 0;
   for (std::size_t i = 0; i < frame.size(); ++i)
@@ -64,7 +60,6 @@ double leaflet_speed(const sim::RunFrame& frame) {
   return fastest;
 }
 
-// What leaks back through a patient's closed valve in the second half of a run, as a share of a stroke of 70 ml, for a beat of 0.8 s.
 double leak(const Series& series) {
   const auto &time = series.columns.at("time"), &in = series.columns.at("port.aorta.volume"),
              &out = series.columns.at("port.ventricle.volume");
@@ -85,24 +80,21 @@ bool finite(const sim::RunFrame& frame) {
   return true;
 }
 
-// Largest distance between the same particles in the last frames of two runs, m; std::numeric_limits<double>::infinity() where they do not
-// hold the same.
 double apart(const std::filesystem::path& first, const std::filesystem::path& second) {
   const sim::RunReader a(first), b(second);
   const sim::RunFrame p = a.frame(a.frame_count() - 1), q = b.frame(b.frame_count() - 1);
-  if (p.time != q.time || p.size() != q.size()) return std::numeric_limits<double>::infinity();
+  if (p.time != q.time || p.size() != q.size()) return infinite;
   std::map<std::int64_t, std::size_t> row;
   for (std::size_t i = 0; i < q.size(); ++i) row[q.id[i]] = i;
   double result = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const auto found = row.find(p.id[i]);
-    if (found == row.end()) return std::numeric_limits<double>::infinity();
+    if (found == row.end()) return infinite;
     for (std::size_t axis = 0; axis < 3; ++axis) result = std::max(result, std::abs(p.position[i][axis] - q.position[found->second][axis]));
   }
   return result;
 }
 
-// What the run's warnings say of overloaded leaflets; "" where they are not.
 std::string overload_told(const sim::RunReader& run) {
   for (const std::string& line : run.warnings())
     if (line.rfind("overloaded: ", 0) == 0) return line;
@@ -113,7 +105,7 @@ double beats_apart(const Series& series, const std::string& column, double beat)
   const auto &time = series.columns.at("time"), &value = series.columns.at(column);
   const auto rows = static_cast<std::size_t>(std::lround(beat / (time[1] - time[0])));
   const std::size_t beats = (value.size() - 1) / rows;
-  if (beats < 4) return std::numeric_limits<double>::infinity();
+  if (beats < 4) return infinite;
   std::vector<double> mean(rows, 0);
   for (std::size_t b = 2; b < beats; ++b)
     for (std::size_t k = 0; k < rows; ++k) mean[k] += value[b * rows + k] / static_cast<double>(beats - 2);
@@ -124,7 +116,7 @@ double beats_apart(const Series& series, const std::string& column, double beat)
     for (std::size_t k = 0; k < rows; ++k) sum += std::pow(value[b * rows + k] - mean[k], 2);
     worst = std::max(worst, std::sqrt(sum / static_cast<double>(rows)));
   }
-  return largest > 0 ? worst / largest : std::numeric_limits<double>::infinity();
+  return largest > 0 ? worst / largest : infinite;
 }
 
 }  // namespace app

@@ -91,17 +91,18 @@ hsize_t most_entries(hid_t object) {
   return std::max(always, packed * bytes);
 }
 
-// Entries for which the file holds chunks: the library plans a piece of work for every chunk that an extent claims, kept or not, and a
-// damaged extent over small chunks would fill all memory.
-hsize_t kept_entries(hid_t set, hid_t space, const std::string& name) {
+// No more entries than there are chunks for either: the library plans a piece of work for every chunk that an extent claims, kept or not,
+// and a damaged extent over small chunks would fill all memory.
+hsize_t most_entries(hid_t set, hid_t space, const std::string& name) {
+  const hsize_t most = most_entries(set);
   Handle create(H5Dget_create_plist(set), H5Pclose, name);
-  if (H5Pget_layout(create) != H5D_CHUNKED) return most_entries(set);
+  if (H5Pget_layout(create) != H5D_CHUNKED) return most;
   std::array<hsize_t, 2> chunk{1, 1};
   if (H5Pget_chunk(create, 2, chunk.data()) < 1) fail(name);
   hsize_t chunks = 0;
   check(H5Dget_num_chunks(set, space, &chunks), name);
   const hsize_t entries = std::max<hsize_t>(1, chunk[0]) * std::max<hsize_t>(1, chunk[1]);
-  return chunks > most_entries(set) / entries ? most_entries(set) : chunks * entries;
+  return chunks > most / entries ? most : chunks * entries;
 }
 
 }  // namespace
@@ -112,7 +113,7 @@ std::pair<std::size_t, std::size_t> extent(hid_t parent, const std::string& name
   std::array<hsize_t, 2> size{0, 1};
   if (H5Sget_simple_extent_ndims(space) > 2) fail(name);
   check(H5Sget_simple_extent_dims(space, size.data(), nullptr), name);
-  if (size[1] > 0 && size[0] > std::min(most_entries(set), kept_entries(set, space, name)) / size[1]) fail(name);
+  if (size[1] > 0 && size[0] > most_entries(set, space, name) / size[1]) fail(name);
   return {size[0], size[1]};
 }
 

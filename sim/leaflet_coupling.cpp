@@ -43,7 +43,7 @@ ShellSubstepReport predict_leaflets(const Scene<D>& scene, const State<D>& state
   for (const auto& body : scene.description.bodies)
     if (body.kind == Kind::fluid) blood_density = std::max(blood_density, body.fluid.density);
   work.shell_normal_mass.resize(n);
-  const double follow = scene.description.scheme.resolved_mass * resolved_share<D>(shells, rows(state.position), dt);
+  const double follow = scene.pressure ? scene.description.scheme.resolved_mass * resolved_share<D>(shells, rows(state.position), dt) : 0.0;
   for (Index s = 0; s < n; ++s) {
     external[s] += state.fluid_force[first + s];
     const double thickness = shells.bodies[shells.body[s]].thickness, l0 = scene.lattice.spacing;

@@ -161,7 +161,7 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
       // What rests makes no density error, and must not be stirred by the unevenness that it starts with (0.8 % rms beside thin sheets):
       // what is beyond that is mended no faster than the flow passes a particle, |v|/l0. Past a leaflet's edge a jet piles its error up
       // within that time: what is beyond the noise of a full but uneven arrangement is mended as fast. (Beside a free surface neighbours
-      // are missing by right: no telling there.) Mending makes volume: where all unevenness was mended, 10 % more blood left a flat valve
+      // are missing by right: no telling there.) Mending makes volume: where all unevenness was mended, 12 % more blood left a flat valve
       // than came in, and it gained 5.5 % of energy; now 8 % and 3.9 % (stability cell rise_ramp100).
       constexpr double unevenness = 0.01, noise = 0.03;
       const auto beyond = [&](double bearable) { return std::copysign(std::max(std::abs(compression) - bearable, 0.0), compression); };

@@ -22,7 +22,6 @@ struct TimeTable {
   std::vector<double> value;
   bool repeat = true;
   double at(double t) const;
-  double integral(double t) const;  // of the value from time 0 to t >= 0, exact
 };
 TimeTable constant_table(double value);
 

@@ -81,8 +81,8 @@ void shell_largest_strain(const ShellElasticity<D>& shells, std::span<const Vect
   for (std::int32_t i = 0; i < rows; ++i) {
     const Kinematics<D> k = kinematics(shells, x.data(), i);
     strain[i] = 0;
-    for (double side : {-0.5, 0.5}) {
-      const double height = where == StrainOf::middle ? 0.0 : side * shells.bodies[shells.body[i]].bending_thickness;
+    const double reach = where == StrainOf::middle ? 0.0 : 0.5 * shells.bodies[shells.body[i]].bending_thickness;
+    for (double height : {-reach, reach}) {
       const Eigen::Matrix2d u = square_root(metric_at(k.metric, k.curvature, height));
       const double mean = 0.5 * u.trace(), radius = std::sqrt(std::max(0.0, mean * mean - u.determinant()));
       strain[i] = std::max({strain[i], std::abs(mean + radius - 1), std::abs(mean - radius - 1)});

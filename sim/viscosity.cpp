@@ -81,11 +81,11 @@ namespace {
 
 // pair_viscosity of fluid row i's links: at the mean of both ends' shear rates, which is that of the link's middle.
 template <int D>
-void link_viscosities(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, Index i) {
-  const double limit = scene.description.scheme.viscosity_limit, own = shear_rate<D>(work.velocity_gradient[i]);
+void link_viscosities(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, std::span<const double> shear_rates, Index i) {
+  const double limit = scene.description.scheme.viscosity_limit, own = shear_rates[i];
   const std::int64_t first = work.neighbors.start[i], last = work.neighbors.start[i + 1];
   const auto rheology = [&](Index row) -> const auto& { return scene.description.bodies[state.body[row]].fluid.rheology; };
-  const auto rate = [&](std::int32_t j) { return j < scene.first_fluid ? own : 0.5 * (own + shear_rate<D>(work.velocity_gradient[j])); };
+  const auto rate = [&](std::int32_t j) { return j < scene.first_fluid ? own : 0.5 * (own + shear_rates[j]); };
   for (std::int64_t k = first; k < last; ++k) work.pair_viscosity[k] = rate(work.neighbors.index[k]);
   viscosities(rheology(i), std::span(work.pair_viscosity).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(last - first)),
               limit);
@@ -115,8 +115,11 @@ void particle_viscosity(const Scene<D>& scene, const State<D>& state, Workspace<
   work.pair_viscosity.clear();
   if (!scene.viscosity->shear_dependent || !scene.viscosity->corrected) return;
   work.pair_viscosity.resize(work.neighbors.index.size());
+  std::vector<double> shear_rates(n, 0);
+#pragma omp parallel for schedule(static)
+  for (Index i = scene.first_fluid; i < n; ++i) shear_rates[i] = shear_rate<D>(work.velocity_gradient[i]);
 #pragma omp parallel for schedule(dynamic, 256)
-  for (Index i = scene.first_fluid; i < n; ++i) link_viscosities(scene, state, work, i);
+  for (Index i = scene.first_fluid; i < n; ++i) link_viscosities<D>(scene, state, work, shear_rates, i);
 }
 
 template <int D>

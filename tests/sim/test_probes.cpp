@@ -152,6 +152,16 @@ TEST(Probes, VolumeOfAFluidThatTheSpacingDoesNotDivideIsTheBodys) {
   EXPECT_NEAR(probes.evaluate(scene, state)[0][0], 0.96 * 2 * 1.2, 1e-12);
 }
 
+TEST(Probes, AFullVesselHasTheNumberDensityOfItsParticlesVolume) {
+  sim::SceneDescription<2> description = sim::testing::channel(0.5, 8, {1000, sim::Newtonian{1000}}, 0).description;
+  for (std::size_t i = 0; i < description.particles.size(); ++i)
+    if (description.particles.kind[i] == sim::Kind::fluid) description.particles.volume[i] *= 0.96;
+  const double spacing = description.spacing;
+  const auto scene = sim::make_scene(description);
+  EXPECT_NEAR(scene.fluid_particle_volume, 0.96 * spacing * spacing, 1e-12);
+  EXPECT_NEAR(scene.lattice.number_density, sim::make_lattice(2, spacing, scene.lattice.radius).number_density / 0.96, 1e-9);
+}
+
 TEST(Probes, FlowRateEnergyVolumeAndFront) {
   sim::SceneDescription<2> description = water_on_a_floor();
   sim::Probe<2> flow = probe(Quantity::flow_rate, {});
