@@ -1,5 +1,6 @@
 #include "sim/ports.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -96,7 +97,7 @@ void open_ports(const Scene<D>& scene, State<D>& state) {
                               -port.start_speed * port.normal, 0);
     }
   }
-  prescribe_ports<D>(scene, state, nullptr, 0);
+  prescribe_ports<D>(scene, state, 0);
 }
 
 namespace {
@@ -112,40 +113,54 @@ double resolved_profile(const Scene<D>& scene, double speed) {
   return 1 / (1 + reynolds * reynolds / 100);
 }
 
-// Speed of each particle of a port whose pressure is given: the blood's own beside it, layer by layer outward, along the port's normal and
-// never against the mean flow; `local` in [0, 1] is how much of the local difference from the mean speed is kept. `sheet` holds the port's
-// rows by increasing height.
+// Rows of a port's particles.
 template <int D>
-void extrapolate_speed(State<D>& state, const Workspace<D>& work, const Port<D>& port, double mean, double local,
-                       const std::vector<std::pair<double, std::size_t>>& sheet) {
-  for (const auto& [height, i] : sheet) {
-    double sum = 0, weights = 0;
-    for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
-      const auto j = static_cast<std::size_t>(work.neighbors.index[k]);
-      if (state.kind[j] != Kind::fluid && (state.kind[j] != Kind::port || state.port[j] != state.port[i])) continue;
-      if ((state.position[j] - port.point).dot(port.normal) >= height) continue;
-      sum -= work.link_weight[k] * state.velocity[j].dot(port.normal);
-      weights += work.link_weight[k];
-    }
-    double speed = weights > 0 ? sum / weights : mean;
-    if (speed * mean < 0) speed = 0;
-    speed = mean + local * (speed - mean);
-    state.velocity[i] = -speed * port.normal;
-  }
+std::vector<std::size_t> rows_of_port(const Scene<D>& scene, const State<D>& state, std::size_t port) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i)
+    if (state.port[i] == static_cast<std::int32_t>(port)) rows.push_back(i);
+  return rows;
+}
+
+// Largest speed of some rows, m/s.
+template <int D>
+double fastest_of(const State<D>& state, const std::vector<std::size_t>& rows) {
+  double fastest = 0;
+  for (std::size_t i : rows) fastest = std::max(fastest, state.velocity[i].norm());
+  return fastest;
+}
+
+// Makes a port's particles carry the mean speed (m/s, inward) together and keep `share` of their differences from it, but never run
+// against it: what came in and went out side by side would be the blood's noise. All layers together: a profile's rows are not abreast, and
+// the mean of one layer would be that of the rows which happen to be in it.
+template <int D>
+void carry_mean_flow(State<D>& state, const Port<D>& port, const std::vector<std::size_t>& rows, double mean, double share) {
+  const double part = 1 / static_cast<double>(rows.size());
+  double before = 0, cut = 0;
+  for (std::size_t i : rows) before -= part * state.velocity[i].dot(port.normal);
+  const auto speed = [&](std::size_t i) {
+    const double own = mean + share * (-state.velocity[i].dot(port.normal) - before);
+    return own * mean > 0 ? own : 0;
+  };
+  for (std::size_t i : rows) cut += part * speed(i);
+  for (std::size_t i : rows) state.velocity[i] = -(cut != 0 ? mean / cut * speed(i) : mean) * port.normal;
 }
 
 }  // namespace
 
 template <int D>
-void prescribe_ports(const Scene<D>& scene, State<D>& state, const Workspace<D>* work, double time) {
+void prescribe_ports(const Scene<D>& scene, State<D>& state, double dt) {
+  const double time = state.time + dt;
   for (std::size_t p = 0; p < scene.description.ports.size(); ++p) {
     const Port<D>& port = scene.description.ports[p];
-    std::vector<std::pair<double, std::size_t>> sheet;
-    for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i)
-      if (state.port[i] == static_cast<std::int32_t>(p)) sheet.emplace_back((state.position[i] - port.point).dot(port.normal), i);
-    std::sort(sheet.begin(), sheet.end());
-    double speed = 0, pressure = 0;
-    bool local = false;
+    const std::vector<std::size_t> rows = rows_of_port(scene, state, p);
+    double speed = 0, pressure = 0, share = 0;
+    if (follows_blood(port)) {
+      speed = speed_inside(scene, state, port);
+      // A profile that the particles do not resolve flattens, the less they resolve it the sooner: at once where a layer moves as a sheet.
+      const double fastest = fastest_of(state, rows), resolved = resolved_profile(scene, fastest);
+      share = std::exp(-(1 - resolved) / resolved * fastest * dt / scene.description.spacing);
+    }
     switch (port.condition) {
       case PortCondition::velocity:
         speed = port.table.at(time);
@@ -156,21 +171,27 @@ void prescribe_ports(const Scene<D>& scene, State<D>& state, const Workspace<D>*
         break;
       }
       case PortCondition::pressure:
-        speed = speed_inside(scene, state, port);
         pressure = port.table.at(time) - port.impedance * (speed - state.port_memory[p]);
-        local = work != nullptr;
         break;
       case PortCondition::windkessel:
-        speed = speed_inside(scene, state, port);
         pressure = state.port_memory[p] - port.windkessel.proximal_resistance * state.port_flow[p];
-        local = work != nullptr;
         break;
     }
-    for (const auto& [height, i] : sheet) {
-      state.velocity[i] = -speed * port.normal;
-      state.pressure[i] = pressure;
-    }
-    if (local) extrapolate_speed(state, *work, port, speed, resolved_profile(scene, speed), sheet);
+    for (std::size_t i : rows) state.pressure[i] = pressure;
+    carry_mean_flow(state, port, rows, speed, share);
+  }
+}
+
+template <int D>
+void develop_port_profiles(const Scene<D>& scene, State<D>& state, const Workspace<D>& work) {
+  for (std::size_t p = 0; p < scene.description.ports.size(); ++p) {
+    const Port<D>& port = scene.description.ports[p];
+    if (!follows_blood(port)) continue;
+    const std::vector<std::size_t> rows = rows_of_port(scene, state, p);
+    double mean = 0;
+    for (std::size_t i : rows) mean -= state.velocity[i].dot(port.normal) / static_cast<double>(rows.size());
+    for (std::size_t i : rows) state.velocity[i] = work.viscous_solution[i - static_cast<std::size_t>(scene.first_fluid)];
+    carry_mean_flow(state, port, rows, mean, 1.0);
   }
 }
 
@@ -179,17 +200,46 @@ void wall_grip(const Scene<D>& scene, const State<D>& state, Workspace<D>& work)
   work.grip.clear();
   if (scene.description.ports.empty()) return;
   work.grip.assign(state.size(), 1.0f);
-  for (const auto& port : scene.description.ports) {
+  for (std::int32_t p = 0; p < static_cast<std::int32_t>(scene.description.ports.size()); ++p) {
+    const Port<D>& port = scene.description.ports[static_cast<std::size_t>(p)];
     const double share = resolved_profile(scene, speed_inside(scene, state, port));
 #pragma omp parallel for schedule(static)
     for (std::ptrdiff_t i = static_cast<std::ptrdiff_t>(scene.first_fluid); i < static_cast<std::ptrdiff_t>(state.size()); ++i) {
-      if (state.kind[i] != Kind::fluid) continue;
-      const double depth = -height_outside(scene, port, state.position[i]) / (layers * scene.description.spacing);
+      if (state.kind[i] != Kind::fluid && state.port[i] != p) continue;
+      const double depth =
+          state.kind[i] == Kind::fluid ? -height_outside(scene, port, state.position[i]) / (layers * scene.description.spacing) : 0;
       if (depth < 0 || depth > 1) continue;
       work.grip[i] = std::min(work.grip[i], static_cast<float>(share + depth * (1 - share)));
     }
   }
 }
+
+namespace {
+
+// Gives every particle that comes in through a port the next one behind it, up to three layers out, where none is.
+template <int D>
+void fill_port(const Scene<D>& scene, State<D>& state, std::size_t p) {
+  const Port<D>& port = scene.description.ports[p];
+  const double l0 = scene.description.spacing, free = 0.7 * l0;
+  const Vector<D> along = port.normal.unitOrthogonal();
+  std::vector<std::pair<double, std::size_t>> rows;  // by their place along the opening
+  for (std::size_t i : rows_of_port(scene, state, p)) rows.emplace_back(state.position[i].dot(along), i);
+  std::sort(rows.begin(), rows.end());
+  const std::vector<std::pair<double, std::size_t>> present = rows;
+  for (const auto& [place, i] : present) {
+    const double height = (state.position[i] - port.point).dot(port.normal);
+    if (height < 0 || height > (layers - 1) * l0 || state.velocity[i].dot(port.normal) > 0) continue;
+    const Vector<D> spot = state.position[i] + l0 * port.normal;
+    const auto near = std::lower_bound(rows.begin(), rows.end(), std::pair<double, std::size_t>(place - free, 0));
+    const auto taken = [&](const auto& row) { return (state.position[row.second] - spot).squaredNorm() < free * free; };
+    const auto end = std::find_if(near, rows.end(), [&](const auto& row) { return row.first > place + free; });
+    if (std::any_of(near, end, taken)) continue;
+    rows.insert(std::upper_bound(near, end, std::pair(place, state.size())), {place, state.size()});
+    append_port_particle<D>(state, static_cast<std::int32_t>(p), state.body[i], spot, state.velocity[i], state.pressure[i]);
+  }
+}
+
+}  // namespace
 
 template <int D>
 void exchange_through_ports(const Scene<D>& scene, State<D>& state, double dt) {
@@ -218,8 +268,7 @@ void exchange_through_ports(const Scene<D>& scene, State<D>& state, double dt) {
       state.port_flow[p] = flow;
       state.port_volume[p] += flow * dt;
       // Power with the flow of the step's middle: the sheet moves as the blood did at its start.
-      const bool follows = port.condition == PortCondition::pressure || port.condition == PortCondition::windkessel;
-      state.ledger.port_work += sheet_pressure * (follows ? 0.5 * (flow + area * speed_inside(scene, state, port)) : flow) * dt;
+      state.ledger.port_work += sheet_pressure * (follows_blood(port) ? 0.5 * (flow + area * speed_inside(scene, state, port)) : flow) * dt;
       if (port.condition == PortCondition::pressure) state.port_memory[p] += dt / (dt + impedance_memory) * (speed - state.port_memory[p]);
       if (port.condition == PortCondition::windkessel) {
         const Windkessel& w = port.windkessel;  // C dP/dt = -q - P/R_d with q the flow into the blood
@@ -235,10 +284,6 @@ void exchange_through_ports(const Scene<D>& scene, State<D>& state, double dt) {
         state.port[i] = -1;
         ++state.ledger.particles_in;
         state.ledger.port_work += carried(i);
-        const Vector<D> spot = state.position[i] + layers * l0 * port.normal;
-        bool free = true;
-        for (std::size_t j : sheet) free = free && (keep[j - first] == 0 || (state.position[j] - spot).squaredNorm() > 0.36 * l0 * l0);
-        if (free) append_port_particle<D>(state, static_cast<std::int32_t>(p), state.body[i], spot, state.velocity[i], state.pressure[i]);
       }
     }
     for (std::size_t i = first; i < before; ++i) {
@@ -251,8 +296,8 @@ void exchange_through_ports(const Scene<D>& scene, State<D>& state, double dt) {
       state.ledger.port_work -= carried(i);
     }
   }
-  keep.resize(state.size() - first, 1);
   keep_rows(state, first, keep);
+  for (std::size_t p = 0; p < ports.size(); ++p) fill_port(scene, state, p);
 }
 
 template <int D>
@@ -276,11 +321,12 @@ void remove_escaped(const Scene<D>& scene, State<D>& state) {
   if (any) keep_rows(state, first, keep);
 }
 
-#define INSTANTIATE(D)                                                                    \
-  template void open_ports(const Scene<D>&, State<D>&);                                   \
-  template void prescribe_ports(const Scene<D>&, State<D>&, const Workspace<D>*, double); \
-  template void exchange_through_ports(const Scene<D>&, State<D>&, double);               \
-  template void wall_grip(const Scene<D>&, const State<D>&, Workspace<D>&);               \
+#define INSTANTIATE(D)                                                                  \
+  template void open_ports(const Scene<D>&, State<D>&);                                 \
+  template void prescribe_ports(const Scene<D>&, State<D>&, double);                    \
+  template void develop_port_profiles(const Scene<D>&, State<D>&, const Workspace<D>&); \
+  template void exchange_through_ports(const Scene<D>&, State<D>&, double);             \
+  template void wall_grip(const Scene<D>&, const State<D>&, Workspace<D>&);             \
   template void remove_escaped(const Scene<D>&, State<D>&);
 INSTANTIATE(2)
 INSTANTIATE(3)

@@ -11,11 +11,23 @@ namespace sim {
 template <int D>
 void open_ports(const Scene<D>& scene, State<D>& state);
 
-// Pressure (Pa) and speed (m/s, inward) of every port at a time; Windkessel ports from their memory. Sets the port particles' pressure and
-// velocity: with a given pressure the speed is the blood's own beside the port, extrapolated outward along its normal (without `work`,
-// which holds the neighbours, its mean).
+// Whether the blood's own flow moves a port's particles.
 template <int D>
-void prescribe_ports(const Scene<D>& scene, State<D>& state, const Workspace<D>* work, double time);
+bool follows_blood(const Port<D>& port) {
+  return port.condition == PortCondition::pressure || port.condition == PortCondition::windkessel;
+}
+
+// Pressure (Pa) and speed (m/s, inward) of every port at the end of a step of dt seconds; Windkessel ports from their memory. Sets the port
+// particles' pressure and velocity: where the port follows the blood their mean speed is that of the blood beside the opening, and their
+// profile their own, as far as particles resolve it.
+template <int D>
+void prescribe_ports(const Scene<D>& scene, State<D>& state, double dt);
+
+// Takes the viscous step's velocities for the particles of ports that follow the blood: outside the opening the vessel goes on straight, so
+// only viscosity changes the profile there, and a uniform push keeps the mean (Womersley's flow). The profile is not copied from
+// the blood inside: at an inflow that feeds on itself.
+template <int D>
+void develop_port_profiles(const Scene<D>& scene, State<D>& state, const Workspace<D>& work);
 
 // work.grip: beside a port (within 3 l0) whose profile the particles do not resolve, blood slips along the wall, as the port's layers do.
 template <int D>

@@ -104,6 +104,7 @@ void viscosity_stage(const Scene<D>& scene, State<D>& state, Workspace<D>& work,
   if (scene.viscosity->corrected) add_laplacian_correction(scene, state, work);
   work.boundary_force.assign(static_cast<std::size_t>(scene.elastic_count + scene.shell_count), Vector<D>::Zero());
   report.viscosity_iterations = solve_viscosity<D>(scene, state, work, dt, work.boundary_force).iterations;
+  develop_port_profiles(scene, state, work);
 }
 
 template <int D>
@@ -128,7 +129,7 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, std:
   report.elastic_substeps = 0;  // a refused step's do not count
   find_neighborhood(scene, state, work);
   timed(clocks, Stage::ports_and_walls, [&] {
-    prescribe_ports<D>(scene, state, &work, state.time + dt);
+    prescribe_ports<D>(scene, state, dt);
     wall_grip(scene, state, work);
   });
   timed(clocks, Stage::velocity_gradients, [&] {

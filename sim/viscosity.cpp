@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/operators.h"
+#include "sim/ports.h"
 #include "sim/quadratic_fit.h"
 
 namespace sim {
@@ -176,7 +177,11 @@ void assemble_viscosity(const Scene<D>& scene, const State<D>& state, Workspace<
   work.viscous_source.resize(rows), work.viscous_solution.resize(rows);
   const double factor = scene.lattice.laplacian_factor();
   const std::int64_t first_link = work.neighbors.start[first];
-  // Port rows keep their velocity: identity rows. Boundary links are known values: they move to the right-hand side (column = own row, 0).
+  const auto given = [&](Index i) {
+    return state.kind[i] == Kind::port && !follows_blood(scene.description.ports[static_cast<std::size_t>(state.port[i])]);
+  };
+  // Rows of ports whose speed is given keep it: identity rows. Boundary links are known values: they move to the right-hand side (column =
+  // own row, 0).
 #pragma omp parallel
   {
     WallLinks<D> walls;
@@ -185,7 +190,7 @@ void assemble_viscosity(const Scene<D>& scene, const State<D>& state, Workspace<
       const double rho = scene.density[state.body[i]];
       double diagonal = rho / dt;
       Vector<D> source = rho / dt * state.velocity[i] + rho * work.acceleration[i];
-      const bool given = state.kind[i] == Kind::port;
+      const bool known = given(i);
       walls.clear();
       for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
         const std::int32_t j = work.neighbors.index[k];
@@ -193,14 +198,14 @@ void assemble_viscosity(const Scene<D>& scene, const State<D>& state, Workspace<
         const double w = work.link_weight[k];
         a.column[e] = static_cast<std::int32_t>(i - first);
         a.value[e] = 0;
-        if (w == 0 || given) continue;
+        if (w == 0 || known) continue;
         if (j < first) {
           walls.add(scene, state, work, i, j, scene.space.difference(state.position[i], state.position[j]), w);
           continue;
         }
         const double c = factor * w * fluid_viscosity(work, i, j, k);
         diagonal += c;
-        if (state.kind[j] == Kind::port)
+        if (given(j))
           source += c * state.velocity[j];
         else
           a.column[e] = static_cast<std::int32_t>(j - first), a.value[e] = -c;
@@ -210,7 +215,7 @@ void assemble_viscosity(const Scene<D>& scene, const State<D>& state, Workspace<
         diagonal += link.coefficient;
         source += link.coefficient * work.boundary_velocity[link.boundary];
       }
-      if (given) source = diagonal * state.velocity[i];
+      if (known) source = diagonal * state.velocity[i];
       a.diagonal[i - first] = diagonal;
       work.viscous_source[i - first] = source;
       work.viscous_solution[i - first] = state.velocity[i] + dt * work.acceleration[i];
