@@ -93,7 +93,8 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
   const double k = scene.lattice.laplacian_factor(), n0 = scene.lattice.number_density, volume = scene.fluid_particle_volume;
   // The rate at which a density error is mended: with the step itself a step cut short would mend faster, drive blood faster, and be cut
   // shorter still.
-  const double blend = scene.description.scheme.density_blend / (dt * std::max(dt, scene.description.scheme.maximum_step));
+  const double usual = state.step > 0 ? 0.5 * state.time / static_cast<double>(state.step) : 0;  // s, half the mean step so far
+  const double blend = scene.description.scheme.density_blend / (dt * std::max({dt, scene.description.scheme.maximum_step, usual}));
   const bool closed = scene.sheet && !scene.pressure->free_surface;  // a vessel full of blood
   SymmetricMatrix& a = work.matrix;
   a.diagonal.assign(unknowns, 0);
