@@ -1,4 +1,6 @@
 // cusp validate [CASE…] [--full] [--list] [--docs DIR] [--json]: the built-in cases (validation.h).
+#include <omp.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -47,6 +49,7 @@ void copy_to_docs(const std::vector<ValidationCase>& cases, const std::filesyste
 int validate_random(const Options& options) {
   nlohmann::json all{{"scenes", nlohmann::json::array()}};
   std::map<std::string, int> counts;
+  if (options.threads > 0) omp_set_num_threads(options.threads);
   for (int k = 0; k < options.random; ++k) {
     all["scenes"].push_back(run_random_scene(options.seed + static_cast<std::uint64_t>(k)));
     const nlohmann::json& one = all["scenes"].back();
