@@ -239,7 +239,7 @@ void run_cells(const std::vector<const Cell*>& cells, const StabilityOptions& op
       broken.push_back({folder / "twin", settings}), broken_names.push_back(cell->name + "/broken");
     }
   }
-  pass(plain, plain_names, 1);
+  pass(plain, plain_names, plain.size() == 1 ? grid.jobs : 1);  // the results do not depend on it
   if (!broken.empty()) pass(broken, broken_names, 1);
   if (!twins.empty()) pass(twins, twin_names, 1);
   if (!threaded.empty()) pass(threaded, threaded_names, 2);

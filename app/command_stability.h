@@ -13,7 +13,7 @@ struct StabilityOptions {
   std::vector<std::string> cells;                         // names; empty = all
   bool fast = false;                                      // only the cells marked fast
   bool list = false;                                      // only list them
-  int jobs = 0;                                           // cells at a time, one thread each; 0 = as many as processors
+  int jobs = 0;                                           // cells at a time, or threads of a cell alone; 0 = as many as processors
   bool quiet = false;
 };
 
