@@ -239,45 +239,43 @@ void fill_port(const Scene<D>& scene, State<D>& state, std::size_t p) {
   }
 }
 
+// The flow of a step of dt seconds through a port: port_flow, port_volume, its memory and the work at it.
+template <int D>
+void account_flow(const Scene<D>& scene, State<D>& state, std::size_t p, const std::vector<std::size_t>& rows, double dt) {
+  if (rows.empty()) return;
+  const Port<D>& port = scene.description.ports[p];
+  const double area = opening_area(scene, state, static_cast<std::int32_t>(p)), pressure = state.pressure[rows.back()];
+  double speed = 0;
+  for (std::size_t i : rows) speed -= state.velocity[i].dot(port.normal) / static_cast<double>(rows.size());
+  const double flow = speed * area;
+  state.port_flow[p] = flow;
+  state.port_volume[p] += flow * dt;
+  // Power with the flow of the step's middle: the layers move as the blood did at its start.
+  state.ledger.port_work += pressure * (follows_blood(port) ? 0.5 * (flow + area * speed_inside(scene, state, port)) : flow) * dt;
+  if (port.condition == PortCondition::pressure) state.port_memory[p] += dt / (dt + impedance_memory) * (speed - state.port_memory[p]);
+  if (port.condition == PortCondition::windkessel) {
+    const Windkessel& w = port.windkessel;  // C dP/dt = -q - P/R_d with q the flow into the blood
+    state.port_memory[p] += dt * (-flow - state.port_memory[p] / w.distal_resistance) / w.compliance;
+  }
+}
+
 }  // namespace
 
 template <int D>
 void exchange_through_ports(const Scene<D>& scene, State<D>& state, double dt) {
   const auto& ports = scene.description.ports;
   const std::size_t first = static_cast<std::size_t>(scene.first_fluid), before = state.size();
-  const double l0 = scene.description.spacing;
+  const double reach = layers * scene.description.spacing;
   std::vector<std::uint8_t> keep(before - first, 1);
   const auto carried = [&](std::size_t i) {  // kinetic energy of a particle, J
     return 0.5 * scene.density[state.body[i]] * scene.fluid_particle_volume * state.velocity[i].squaredNorm();
   };
   for (std::size_t p = 0; p < ports.size(); ++p) {
-    const Port<D>& port = ports[p];
-    const double area = opening_area(scene, state, static_cast<std::int32_t>(p));
-    double speed = 0, sheet_pressure = 0;
-    bool any = false;
-    std::vector<std::size_t> sheet;
-    for (std::size_t i = first; i < before; ++i)
-      if (state.port[i] == static_cast<std::int32_t>(p)) sheet.push_back(i);
-    for (std::size_t i : sheet) {
-      speed -= state.velocity[i].dot(port.normal) / static_cast<double>(sheet.size());
-      sheet_pressure = state.pressure[i];
-      any = true;
-    }
-    if (any) {
-      const double flow = speed * area;
-      state.port_flow[p] = flow;
-      state.port_volume[p] += flow * dt;
-      // Power with the flow of the step's middle: the sheet moves as the blood did at its start.
-      state.ledger.port_work += sheet_pressure * (follows_blood(port) ? 0.5 * (flow + area * speed_inside(scene, state, port)) : flow) * dt;
-      if (port.condition == PortCondition::pressure) state.port_memory[p] += dt / (dt + impedance_memory) * (speed - state.port_memory[p]);
-      if (port.condition == PortCondition::windkessel) {
-        const Windkessel& w = port.windkessel;  // C dP/dt = -q - P/R_d with q the flow into the blood
-        state.port_memory[p] += dt * (-flow - state.port_memory[p] / w.distal_resistance) / w.compliance;
-      }
-    }
-    for (std::size_t i : sheet) {
-      const double height = (state.position[i] - port.point).dot(port.normal);
-      if (height > layers * l0) {
+    const std::vector<std::size_t> rows = rows_of_port(scene, state, p);
+    account_flow(scene, state, p, rows, dt);
+    for (std::size_t i : rows) {
+      const double height = (state.position[i] - ports[p].point).dot(ports[p].normal);
+      if (height > reach) {
         keep[i - first] = 0;
       } else if (height < 0) {
         state.kind[i] = Kind::fluid;
@@ -288,8 +286,8 @@ void exchange_through_ports(const Scene<D>& scene, State<D>& state, double dt) {
     }
     for (std::size_t i = first; i < before; ++i) {
       if (state.kind[i] != Kind::fluid) continue;
-      const double height = height_outside(scene, port, state.position[i]);
-      if (height <= 0 || height > layers * l0) continue;
+      const double height = height_outside(scene, ports[p], state.position[i]);
+      if (height <= 0 || height > reach) continue;
       state.kind[i] = Kind::port;
       state.port[i] = static_cast<std::int32_t>(p);
       ++state.ledger.particles_out;
