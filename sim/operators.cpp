@@ -36,11 +36,13 @@ double kinematic_viscosity(const Scene<D>& scene, std::int32_t body, double rate
   return viscosity(scene.description.bodies[body].fluid.rheology, rate, scene.description.scheme.viscosity_limit) / scene.density[body];
 }
 
-// What is summed over the neighbours of a particle, in one pass: the moments d/n0 w r r^T / |r|² of those with and without a pressure, and
-// the velocity's d/n0 w (v_j - v_i) r^T / |r|².
+// What is summed over the neighbours of a particle, in one pass: the moments d/n0 w r r^T / |r|² of blood, of what has a velocity alone
+// and of what has a pressure alone, and the velocity's d/n0 w (v_j - v_i) r^T / |r|². A port whose pressure is given says nothing of
+// velocity: blood crosses it freely, and where it met the port's mean flow it would seem to pile up there, be pushed out by the pressure
+// of that, and pile up the more.
 template <int D>
 struct LinkSums {
-  DyadSum<D> with_pressure, without, jump;
+  DyadSum<D> with_pressure, without, open, jump;
   bool all_with_pressure = true;
 };
 
@@ -59,8 +61,14 @@ LinkSums<D> sum_links(const Scene<D>& scene, const State<D>& state, const Worksp
     const double c = factor * w / std::max(r.squaredNorm(), least);
     const Padded<D> scaled = c * r;
     if (j >= first_fluid) {
+      const bool port = state.kind[j] == Kind::port;
+      if (port && gives_pressure(scene.description.ports[state.port[j]])) {
+        sums.open.add(r, scaled);
+        sums.all_with_pressure = false;
+        continue;
+      }
       sums.jump.add(work.velocity[j] - velocity, scaled);
-      if (state.kind[j] != Kind::port || gives_pressure(scene.description.ports[state.port[j]])) {
+      if (!port) {
         sums.with_pressure.add(r, scaled);
         continue;
       }
@@ -86,6 +94,7 @@ void invert_moments(const Scene<D>& scene, Workspace<D>& work, Index i, const Li
   }
   Tensor<D> fluid = sums.with_pressure.tensor();
   work.velocity_inverse[i] = floored_inverse<D>(fluid + sums.without.tensor(), least_velocity);
+  fluid += sums.open.tensor();
   bool same = sums.all_with_pressure && plainly_invertible<D>(fluid, least_velocity);
   if (work.surface[i] == 1) {  // the surface, half a spacing ahead, is a sample of the pressure (see pressure_gradients)
     const double ahead = work.surface_outward[i].norm();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/operators.h"
 #include "sim/parallel.h"
 #include "sim/rheology.h"
 
@@ -155,7 +156,7 @@ void prescribe_ports(const Scene<D>& scene, State<D>& state, double dt) {
     const Port<D>& port = scene.description.ports[p];
     const std::vector<std::size_t> rows = rows_of_port(scene, state, p);
     double speed = 0, pressure = 0, share = 0;
-    if (follows_blood(port)) {
+    if (gives_pressure(port)) {
       speed = speed_inside(scene, state, port);
       // A profile that the particles do not resolve flattens, the less they resolve it the sooner: at once where a layer moves as a sheet.
       const double fastest = fastest_of(state, rows), resolved = resolved_profile(scene, fastest);
@@ -186,7 +187,7 @@ template <int D>
 void develop_port_profiles(const Scene<D>& scene, State<D>& state, const Workspace<D>& work) {
   for (std::size_t p = 0; p < scene.description.ports.size(); ++p) {
     const Port<D>& port = scene.description.ports[p];
-    if (!follows_blood(port)) continue;
+    if (!gives_pressure(port)) continue;
     const std::vector<std::size_t> rows = rows_of_port(scene, state, p);
     double mean = 0;
     for (std::size_t i : rows) mean -= state.velocity[i].dot(port.normal) / static_cast<double>(rows.size());
@@ -251,7 +252,7 @@ void account_flow(const Scene<D>& scene, State<D>& state, std::size_t p, const s
   state.port_flow[p] = flow;
   state.port_volume[p] += flow * dt;
   // Power with the flow of the step's middle: the layers move as the blood did at its start.
-  state.ledger.port_work += pressure * (follows_blood(port) ? 0.5 * (flow + area * speed_inside(scene, state, port)) : flow) * dt;
+  state.ledger.port_work += pressure * (gives_pressure(port) ? 0.5 * (flow + area * speed_inside(scene, state, port)) : flow) * dt;
   if (port.condition == PortCondition::pressure) state.port_memory[p] += dt / (dt + impedance_memory) * (speed - state.port_memory[p]);
   if (port.condition == PortCondition::windkessel) {
     const Windkessel& w = port.windkessel;  // C dP/dt = -q - P/R_d with q the flow into the blood

@@ -11,12 +11,6 @@ namespace sim {
 template <int D>
 void open_ports(const Scene<D>& scene, State<D>& state);
 
-// Whether the blood's own flow moves a port's particles.
-template <int D>
-bool follows_blood(const Port<D>& port) {
-  return port.condition == PortCondition::pressure || port.condition == PortCondition::windkessel;
-}
-
 // Pressure (Pa) and speed (m/s, inward) of every port at the end of a step of dt seconds; Windkessel ports from their memory. Sets the port
 // particles' pressure and velocity: where the port follows the blood their mean speed is that of the blood beside the opening, and their
 // profile their own, as far as particles resolve it.

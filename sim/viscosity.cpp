@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "sim/operators.h"
-#include "sim/ports.h"
 #include "sim/quadratic_fit.h"
 
 namespace sim {
@@ -178,7 +177,7 @@ void assemble_viscosity(const Scene<D>& scene, const State<D>& state, Workspace<
   const double factor = scene.lattice.laplacian_factor();
   const std::int64_t first_link = work.neighbors.start[first];
   const auto given = [&](Index i) {
-    return state.kind[i] == Kind::port && !follows_blood(scene.description.ports[static_cast<std::size_t>(state.port[i])]);
+    return state.kind[i] == Kind::port && !gives_pressure(scene.description.ports[static_cast<std::size_t>(state.port[i])]);
   };
   // Rows of ports whose speed is given keep it: identity rows. Boundary links are known values: they move to the right-hand side (column =
   // own row, 0).
