@@ -36,13 +36,20 @@ double kinematic_viscosity(const Scene<D>& scene, std::int32_t body, double rate
   return viscosity(scene.description.bodies[body].fluid.rheology, rate, scene.description.scheme.viscosity_limit) / scene.density[body];
 }
 
-// What is summed over the neighbours of a particle, in one pass: the moments d/n0 w r r^T / |r|² of blood, of what has a velocity alone
-// and of what has a pressure alone, and the velocity's d/n0 w (v_j - v_i) r^T / |r|². A port whose pressure is given says nothing of
-// velocity: blood crosses it freely, and where it met the port's mean flow it would seem to pile up there, be pushed out by the pressure
-// of that, and pile up the more.
+// The jump of velocity from a particle to one of a port. Across a port whose pressure is given blood goes freely: where it met the port's
+// mean flow it would seem to pile up there, be pushed out by the pressure of that, and pile up the more.
+template <int D>
+Padded<D> jump_to_port(const Port<D>& port, const Padded<D>& jump) {
+  if (!gives_pressure(port)) return jump;
+  const Vector<D> all = jump.template head<D>();
+  return pad<D>(Vector<D>(all - all.dot(port.normal) * port.normal));
+}
+
+// What is summed over the neighbours of a particle, in one pass: the moments d/n0 w r r^T / |r|² of those with and without a pressure, and
+// the velocity's d/n0 w (v_j - v_i) r^T / |r|².
 template <int D>
 struct LinkSums {
-  DyadSum<D> with_pressure, without, open, jump;
+  DyadSum<D> with_pressure, without, jump;
   bool all_with_pressure = true;
 };
 
@@ -62,13 +69,9 @@ LinkSums<D> sum_links(const Scene<D>& scene, const State<D>& state, const Worksp
     const Padded<D> scaled = c * r;
     if (j >= first_fluid) {
       const bool port = state.kind[j] == Kind::port;
-      if (port && gives_pressure(scene.description.ports[state.port[j]])) {
-        sums.open.add(r, scaled);
-        sums.all_with_pressure = false;
-        continue;
-      }
-      sums.jump.add(work.velocity[j] - velocity, scaled);
-      if (!port) {
+      const Padded<D> jump = work.velocity[j] - velocity;
+      sums.jump.add(port ? jump_to_port<D>(scene.description.ports[state.port[j]], jump) : jump, scaled);
+      if (!port || gives_pressure(scene.description.ports[state.port[j]])) {
         sums.with_pressure.add(r, scaled);
         continue;
       }
@@ -94,7 +97,6 @@ void invert_moments(const Scene<D>& scene, Workspace<D>& work, Index i, const Li
   }
   Tensor<D> fluid = sums.with_pressure.tensor();
   work.velocity_inverse[i] = floored_inverse<D>(fluid + sums.without.tensor(), least_velocity);
-  fluid += sums.open.tensor();
   bool same = sums.all_with_pressure && plainly_invertible<D>(fluid, least_velocity);
   if (work.surface[i] == 1) {  // the surface, half a spacing ahead, is a sample of the pressure (see pressure_gradients)
     const double ahead = work.surface_outward[i].norm();
