@@ -123,6 +123,15 @@ std::vector<std::size_t> rows_of_port(const Scene<D>& scene, const State<D>& sta
   return rows;
 }
 
+// What the pressure of fluid at rest under gravity beside row i is more than that at the port's point, Pa: along the opening, for across it
+// the pressure holds in its plane.
+template <int D>
+double resting_pressure(const Scene<D>& scene, const State<D>& state, const Port<D>& port, std::size_t i) {
+  if (!scene.gravity) return 0;
+  const Vector<D> r = state.position[i] - port.point;
+  return scene.density[state.body[i]] * scene.gravity->acceleration.dot(r - r.dot(port.normal) * port.normal);
+}
+
 // Largest speed of some rows, m/s.
 template <int D>
 double fastest_of(const State<D>& state, const std::vector<std::size_t>& rows) {
@@ -178,7 +187,7 @@ void prescribe_ports(const Scene<D>& scene, State<D>& state, double dt) {
         pressure = state.port_memory[p] - port.windkessel.proximal_resistance * state.port_flow[p];
         break;
     }
-    for (std::size_t i : rows) state.pressure[i] = pressure;
+    for (std::size_t i : rows) state.pressure[i] = pressure + resting_pressure(scene, state, port, i);
     carry_mean_flow(state, port, rows, speed, share);
   }
 }
@@ -245,9 +254,12 @@ template <int D>
 void account_flow(const Scene<D>& scene, State<D>& state, std::size_t p, const std::vector<std::size_t>& rows, double dt) {
   if (rows.empty()) return;
   const Port<D>& port = scene.description.ports[p];
-  const double area = opening_area(scene, state, static_cast<std::int32_t>(p)), pressure = state.pressure[rows.back()];
-  double speed = 0;
-  for (std::size_t i : rows) speed -= state.velocity[i].dot(port.normal) / static_cast<double>(rows.size());
+  const double area = opening_area(scene, state, static_cast<std::int32_t>(p));
+  double speed = 0, pressure = 0;
+  for (std::size_t i : rows) {
+    speed -= state.velocity[i].dot(port.normal) / static_cast<double>(rows.size());
+    pressure += state.pressure[i] / static_cast<double>(rows.size());
+  }
   const double flow = speed * area;
   state.port_flow[p] = flow;
   state.port_volume[p] += flow * dt;
