@@ -12,6 +12,7 @@ namespace sim {
 namespace {
 
 constexpr double impedance_memory = 0.03;  // s: flow that lasts longer is part of the given pressure, what is faster meets the impedance
+constexpr double fullest = 2.5;            // a profile's largest speed over its mean: 2 in a pipe's parabola
 constexpr double layers = 3;               // port particles reach this many l0 out of the plane
 
 // Height outside the port's plane (m, positive outside), or a large number where x lies beside the opening.
@@ -141,8 +142,8 @@ double fastest_of(const State<D>& state, const std::vector<std::size_t>& rows) {
 }
 
 // Makes a port's particles carry the mean speed (m/s, inward) together and keep `share` of their differences from it, but never run
-// against it: what came in and went out side by side would be the blood's noise. All layers together: a profile's rows are not abreast, and
-// the mean of one layer would be that of the rows which happen to be in it.
+// against it or faster than a developed profile does: what came in and went out side by side would be the blood's noise. All layers
+// together: a profile's rows are not abreast, and the mean of one layer would be that of the rows which happen to be in it.
 template <int D>
 void carry_mean_flow(State<D>& state, const Port<D>& port, const std::vector<std::size_t>& rows, double mean, double share) {
   const double part = 1 / static_cast<double>(rows.size());
@@ -150,7 +151,7 @@ void carry_mean_flow(State<D>& state, const Port<D>& port, const std::vector<std
   for (std::size_t i : rows) before -= part * state.velocity[i].dot(port.normal);
   const auto speed = [&](std::size_t i) {
     const double own = mean + share * (-state.velocity[i].dot(port.normal) - before);
-    return own * mean > 0 ? own : 0;
+    return own * mean > 0 ? std::copysign(std::min(std::abs(own), fullest * std::abs(mean)), mean) : 0;
   };
   for (std::size_t i : rows) cut += part * speed(i);
   for (std::size_t i : rows) state.velocity[i] = -(cut != 0 ? mean / cut * speed(i) : mean) * port.normal;
