@@ -243,7 +243,8 @@ void fill_port(const Scene<D>& scene, State<D>& state, std::size_t p) {
     const Vector<D> spot = state.position[i] + l0 * port.normal;
     const auto near = std::lower_bound(rows.begin(), rows.end(), std::pair<double, std::size_t>(place - free, 0));
     const auto taken = [&](const auto& row) { return (state.position[row.second] - spot).squaredNorm() < free * free; };
-    const auto end = std::find_if(near, rows.end(), [&](const auto& row) { return row.first > place + free; });
+    const double far = place + free;
+    const auto end = std::find_if(near, rows.end(), [far](const auto& row) { return row.first > far; });
     if (std::any_of(near, end, taken)) continue;
     rows.insert(std::upper_bound(near, end, std::pair(place, state.size())), {place, state.size()});
     append_port_particle<D>(state, static_cast<std::int32_t>(p), state.body[i], spot, state.velocity[i], state.pressure[i]);
