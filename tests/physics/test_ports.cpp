@@ -8,23 +8,9 @@
 namespace sim {
 namespace {
 
-// Blood between plates at y = -half and half, open at x = 0 and x = length, `across` particles wide, with a pressure at each end.
+// Blood between plates, open at x = 0 and x = length, `across` particles wide, with a pressure at each end.
 testing::FluidScene<2> open_channel(double half, int across, double length, const FluidMaterial& blood, double in, double out) {
-  testing::FluidScene<2> scene;
-  const double spacing = 2 * half / across;
-  const int along = static_cast<int>(std::lround(length / spacing));
-  scene.description.spacing = spacing;
-  scene.start_body("plates", Kind::wall);
-  for (int j = -4; j < across + 4; ++j)
-    for (int i = -4; i < along + 4; ++i) {
-      if (j >= 0 && j < across) continue;
-      const double y = -half + (j + 0.5) * spacing;
-      scene.add({(i + 0.5) * spacing, y}, Vector<2>::Zero(), {0, j < 0 ? 1.0 : -1.0}, std::abs(y) - half);
-    }
-  scene.start_body("blood", Kind::fluid);
-  scene.description.bodies.back().fluid = blood;
-  for (int j = 0; j < across; ++j)
-    for (int i = 0; i < along; ++i) scene.add({(i + 0.5) * spacing, -half + (j + 0.5) * spacing});
+  testing::FluidScene<2> scene = testing::plates(half, across, static_cast<int>(std::lround(length * across / (2 * half))), 4, blood);
   for (const bool inlet : {true, false}) {
     Port<2> port;
     port.name = inlet ? "in" : "out", port.radius = half;

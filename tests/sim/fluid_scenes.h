@@ -58,15 +58,15 @@ inline FluidScene<2> tank(double spacing, int across, int high, int filled, int 
   return scene;
 }
 
-// Blood between plates at y = -half and y = half, periodic along x, driven by a pressure gradient G (Pa/m) as a body force.
-inline FluidScene<2> channel(double half, int across, const FluidMaterial& blood, double gradient) {
+// Blood between plates at y = -half and y = half, `across` particles wide and `along` long from x = 0; the plates go on for `beyond` more
+// particles at both ends.
+inline FluidScene<2> plates(double half, int across, int along, int beyond, const FluidMaterial& blood) {
   FluidScene<2> scene;
   const double spacing = 2 * half / across;
   scene.description.spacing = spacing;
-  scene.description.domain = {true, {0, -1}, {across * spacing, 1}, {true, false}};
   scene.start_body("plates", Kind::wall);
   for (int j = -4; j < across + 4; ++j)
-    for (int i = 0; i < across; ++i) {
+    for (int i = -beyond; i < along + beyond; ++i) {
       if (j >= 0 && j < across) continue;
       const double y = -half + (j + 0.5) * spacing;
       scene.add({(i + 0.5) * spacing, y}, Vector<2>::Zero(), {0, j < 0 ? 1.0 : -1.0}, std::abs(y) - half);
@@ -74,7 +74,14 @@ inline FluidScene<2> channel(double half, int across, const FluidMaterial& blood
   scene.start_body("blood", Kind::fluid);
   scene.description.bodies.back().fluid = blood;
   for (int j = 0; j < across; ++j)
-    for (int i = 0; i < across; ++i) scene.add({(i + 0.5) * spacing, -half + (j + 0.5) * spacing});
+    for (int i = 0; i < along; ++i) scene.add({(i + 0.5) * spacing, -half + (j + 0.5) * spacing});
+  return scene;
+}
+
+// Blood between plates, periodic along x, driven by a pressure gradient G (Pa/m) as a body force.
+inline FluidScene<2> channel(double half, int across, const FluidMaterial& blood, double gradient) {
+  FluidScene<2> scene = plates(half, across, across, 0, blood);
+  scene.description.domain = {true, {0, -1}, {across * scene.description.spacing, 1}, {true, false}};
   Load<2> drive;
   drive.body = 1;
   const double acceleration = gradient / blood.density;
