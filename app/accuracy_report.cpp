@@ -110,7 +110,11 @@ void write_costs(const AccuracyStudy& study, std::ostream& md) {
        << " | " << (q < study.noise.size() ? percent(study.noise[q]) : "-") << " | "
        << (q < study.uncertainty.size() && study.uncertainty[q] > 0 ? percent(study.uncertainty[q]) : "-") << " | ";
     const auto over = default_over_front(study, static_cast<int>(q));
-    md << (over ? number(*over, 2) + "× the front's cost" + (*over <= 2 ? "" : ", **beyond 2×**") : "not run") << " |\n";
+    const auto beyond_noise = default_over_front_beyond_noise(study, q);
+    md << (over ? number(*over, 2) + "× the front's cost" : "not run");
+    if (over && beyond_noise && *over > 2)
+      md << (*beyond_noise <= 2 ? "; " + number(*beyond_noise, 2) + "× of what is better by more than the noise" : ", **beyond 2×**");
+    md << " |\n";
   }
   md << "\n";
 }

@@ -252,6 +252,7 @@ sim::SchemeSettings read_scheme(const toml::table& table) {
       {"density_blend", &S::density_blend, {0, 1, false, false, "0 to 1"}},
       {"shifting", &S::shifting, {0, 10, false, false, "0 (off) to 10"}},
       {"subparticle_dissipation", &S::subparticle_dissipation, {0, 10, false, false, "0 (off) to 10"}},
+      {"projection_filter", &S::projection_filter, {0, 0.5, false, false, "0 (off) to 0.5"}},
       {"viscosity_limit", &S::viscosity_limit, positive},
       {"elastic_substep", &S::elastic_substep, {0, 0.5, true, false, "a number above 0, at most 0.5"}},
       {"added_mass", &S::added_mass, {0, 10, false, false, "0 to 10"}},

@@ -104,15 +104,31 @@ CostError cost_and_error(const AccuracyStudy& study, int quantity) {
   return all;
 }
 
-std::optional<double> default_over_front(const AccuracyStudy& study, int quantity) {
+namespace {
+
+// Cost of the scene's own settings over the front's for an error smaller by `margin`; `otherwise` where the front has none.
+std::optional<double> over_front(const AccuracyStudy& study, int quantity, double margin, std::optional<double> otherwise) {
   const CostError all = cost_and_error(study, quantity);
   std::vector<double> cost, error;
   for (std::size_t k : pareto_front(all.cost, all.error)) cost.push_back(all.cost[k]), error.push_back(all.error[k]);
   for (std::size_t k = 0; k < study.points.size(); ++k) {
     if (!study.points[k].scene_itself || !(all.error[k] > 0) || !(all.cost[k] > 0)) continue;
-    if (const auto best = cost_to_reach(cost, error, all.error[k])) return all.cost[k] / *best;
+    if (const auto best = cost_to_reach(cost, error, all.error[k] - margin)) return all.cost[k] / *best;
+    return otherwise;
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> default_over_front(const AccuracyStudy& study, int quantity) { return over_front(study, quantity, 0, std::nullopt); }
+
+std::optional<double> default_over_front_beyond_noise(const AccuracyStudy& study, std::size_t quantity) {
+  const double noise = quantity < study.noise.size() ? study.noise[quantity] : not_told;
+  const int index = static_cast<int>(quantity);
+  if (!(noise > 0)) return default_over_front(study, index);
+  const auto over = over_front(study, index, std::sqrt(2.0) * noise, 1.0);
+  return over ? std::optional(std::max(*over, 1.0)) : std::nullopt;
 }
 
 std::vector<FreeKnob> free_knobs(const AccuracyStudy& study) {

@@ -71,6 +71,9 @@ std::vector<std::size_t> ladder_of(const AccuracyStudy& study);
 // How much more the scene's own settings cost than the front at the same error; none where they were not run. `quantity` < 0: the worst
 // error of all.
 std::optional<double> default_over_front(const AccuracyStudy& study, int quantity);
+// The same against what is better by more than the noise of two starts (sqrt 2 of one's, over jittered starts): at least 1. A cheaper run
+// that is luckier by less than that is no better choice. As above where the noise was not measured.
+std::optional<double> default_over_front_beyond_noise(const AccuracyStudy& study, std::size_t quantity);
 
 // Cost and error of every point with that quantity (< 0: worst), in the study's order.
 struct CostError {

@@ -9,6 +9,7 @@
 #include "sim/parallel.h"
 #include "sim/solid_coupling.h"
 #include "sim/stage.h"
+#include "sim/time_step.h"
 
 namespace sim {
 using Index = std::ptrdiff_t;
@@ -88,13 +89,19 @@ bool has_one_density(const Scene<D>& scene) {
 }  // namespace
 
 template <int D>
+double projection_time(const Scene<D>& scene, const State<D>& state, double dt) {
+  return scene.pressure->free_surface ? std::max(dt, unrestricted_step(scene, state)) : dt;
+}
+
+template <int D>
 void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt) {
+  const double within = projection_time(scene, state, dt);
   const Index unknowns = static_cast<Index>(work.unknown_row.size());
   const double k = scene.lattice.laplacian_factor(), n0 = scene.lattice.number_density, volume = scene.fluid_particle_volume;
   // The rate at which a density error is mended: with the step itself a step cut short would mend faster, drive blood faster, and be cut
   // shorter still.
   const double usual = state.step > 0 ? 0.5 * state.time / static_cast<double>(state.step) : 0;  // s, half the mean step so far
-  const double blend = scene.description.scheme.density_blend / (dt * std::max({dt, scene.description.scheme.maximum_step, usual}));
+  const double blend = scene.description.scheme.density_blend / (within * std::max({within, scene.description.scheme.maximum_step, usual}));
   const bool closed = scene.sheet && !scene.pressure->free_surface;  // a vessel full of blood
   SymmetricMatrix& a = work.matrix;
   a.diagonal.assign(unknowns, 0);
@@ -169,7 +176,7 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
       mending = std::min(blend, std::sqrt(fastest) / (scene.lattice.spacing * dt)) * beyond(unevenness);
       mending += state.velocity[i].norm() / (scene.lattice.spacing * dt) * beyond(noise);
     }
-    source += support * volume * (-work.velocity_gradient[i].trace() / dt - divergence + mending);
+    source += support * volume * (-work.velocity_gradient[i].trace() / within - divergence + mending);
     a.diagonal[u] = diagonal > 0 ? diagonal : 1;
     work.source[u] = diagonal > 0 ? source : 0;
   }
@@ -306,12 +313,8 @@ void pressure_gradients(const Scene<D>& scene, const State<D>& state, Workspace<
       }
     }
     Vector<D> sum = total.template head<D>();
-    const double ahead = work.surface_outward[i].norm();
-    if (inside && ahead > 0) {  // the surface itself: p = 0 half a spacing ahead, with the weight of what is missing there
-      const double missing = scene.lattice.number_density * std::max(1 - work.number_density[i], 0.0);
-      const double distance = 0.5 * scene.lattice.spacing;
-      sum -= factor * missing * distance / (scene.lattice.spacing * scene.lattice.spacing) / ahead * p_i * work.surface_outward[i];
-    }
+    if (inside && work.surface_sample[i] > 0)  // the surface itself: p = 0 half a spacing ahead
+      sum -= work.surface_sample[i] * p_i * work.surface_outward[i].normalized();
     work.pressure_gradient[i] = inside ? Vector<D>(work.pressure_inverse[i] * sum) : sum;
   }
 }
@@ -335,6 +338,7 @@ void boundary_pressures(const Scene<D>& scene, State<D>& state, const Workspace<
 }
 
 #define INSTANTIATE(D)                                                                     \
+  template double projection_time(const Scene<D>&, const State<D>&, double);               \
   template void number_unknowns(const Scene<D>&, const State<D>&, Workspace<D>&);          \
   template void pressure_poisson(const Scene<D>&, const State<D>&, Workspace<D>&, double); \
   template SolveReport solve_pressure(const Scene<D>&, State<D>&, Workspace<D>&);          \

@@ -19,6 +19,12 @@ namespace sim {
 template <int D>
 void number_unknowns(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
 
+// Within what time the divergence of the present velocity is taken away, s: the step; beside a free surface no less than what flow and
+// body accelerations would let a step be, since each projection over an uneven arrangement feeds some of the shortest waves: with steps
+// kept far below that they outgrew what dissipates them (a standing wave of 20 spacings at a twentieth of its step ran away in one period).
+template <int D>
+double projection_time(const Scene<D>& scene, const State<D>& state, double dt);
+
 // Matrix and source of the volume balance, times V. Prescribed port pressures move to the source.
 template <int D>
 void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt);

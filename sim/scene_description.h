@@ -173,6 +173,7 @@ struct SchemeSettings {  // every numerical knob; lengths in units of the spacin
   double shifting = 0.6;        // largest strength A of particle shifting; 0 = off
   double subparticle_dissipation =
       -1;  // C of the dissipation for unresolved scales; 0 = off; -1 = chosen by make_scene: 0.3 with leaflets, else 0.1
+  double projection_filter = 0.05;   // share of what neighbours' gradients do not explain of a velocity, taken off a step; free surfaces
   double viscosity_limit = 0;        // Pa s, cap of the rheological viscosity; 0 = chosen by make_scene: 0.1 with leaflets, else 1000
   double added_mass = 2.0;           // factor on the blood's mass within a leaflet's own lattice layer, rho (l0 - h) per area
   double resolved_mass = 0.3;        // of the mass of blood in the layer: what the elastic sub-steps feel of the blood farther out

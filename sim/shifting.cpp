@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sim/pressure.h"
+
 namespace sim {
 using Index = std::ptrdiff_t;
 
@@ -69,8 +71,11 @@ void shift_particles(const Scene<D>& scene, State<D>& state, const Workspace<D>&
 }
 
 template <int D>
-void add_subparticle_dissipation(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
+void add_subparticle_dissipation(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt) {
   const Index n = static_cast<Index>(state.size());
+  const double filter = scene.pressure->free_surface  // 1/s over n0
+                            ? scene.description.scheme.projection_filter / (projection_time(scene, state, dt) * scene.lattice.number_density)
+                            : 0;
   const double factor = scene.lattice.laplacian_factor() * scene.description.scheme.subparticle_dissipation * scene.lattice.spacing;
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index i = scene.first_fluid; i < n; ++i) {
@@ -86,9 +91,9 @@ void add_subparticle_dissipation(const Scene<D>& scene, const State<D>& state, W
       const DyadSum<D>& other = work.gradient_columns[j];
       Padded<D> rough = jump;  // what the mean gradient does not explain of the jump
       for (int d = 0; d < D; ++d) rough -= half[d] * (gradient.column[d] + other.column[d]);
-      sum += w * jump.norm() * rough;
+      sum += w * (factor * jump.norm() + filter) * rough;
     }
-    work.acceleration[i] += factor * sum.template head<D>();
+    work.acceleration[i] += sum.template head<D>();
   }
 }
 
@@ -146,7 +151,7 @@ void separate_particles(const Scene<D>& scene, State<D>& state, Workspace<D>& wo
 #define INSTANTIATE(D)                                                                          \
   template void shifting_displacement(const Scene<D>&, const State<D>&, Workspace<D>&, double); \
   template void shift_particles(const Scene<D>&, State<D>&, const Workspace<D>&);               \
-  template void add_subparticle_dissipation(const Scene<D>&, const State<D>&, Workspace<D>&);   \
+  template void add_subparticle_dissipation(const Scene<D>&, const State<D>&, Workspace<D>&, double); \
   template void separate_particles(const Scene<D>&, State<D>&, Workspace<D>&);
 INSTANTIATE(2)
 INSTANTIATE(3)

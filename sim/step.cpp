@@ -135,7 +135,7 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, std:
   timed(clocks, Stage::velocity_gradients, [&] {
     velocity_gradients(scene, state, work);
     body_accelerations(scene, state, work);
-    if (scene.description.scheme.subparticle_dissipation > 0) add_subparticle_dissipation(scene, state, work);
+    add_subparticle_dissipation(scene, state, work, dt);
   });
   viscosity_stage(scene, state, work, dt, report);
   number_unknowns(scene, state, work);

@@ -17,4 +17,8 @@ struct StepLimit {
 template <int D>
 StepLimit time_step_limit(const Scene<D>& scene, const State<D>& state, double until);
 
+// What the step would be if the flow and the body accelerations alone limited it, at cfl 0.2: s; infinite where nothing moves or pulls.
+template <int D>
+double unrestricted_step(const Scene<D>& scene, const State<D>& state);
+
 }  // namespace sim

@@ -59,6 +59,11 @@ TEST(WorkPrecision, TellsHowFarTheDefaultsLieFromTheFront) {
   EXPECT_NEAR(*app::default_over_front(study, 0), 1, 1e-12);
   study.points.push_back(point("scheme.cfl", 0.01, 0.25, 0.004));  // four times cheaper than the default (1 s), and better
   EXPECT_GT(*app::default_over_front(study, 0), 4);
+  study.noise = {0.0005};  // the default's error is 0.005: 0.004 is better by more than two starts differ
+  EXPECT_GT(*app::default_over_front_beyond_noise(study, 0), 4);
+  study.noise = {0.002};
+  EXPECT_EQ(*app::default_over_front_beyond_noise(study, 0), 1);
+  EXPECT_GT(*app::default_over_front(study, 0), 4);
   study.points.back().curve = "seed";  // a lucky start is no choice
   EXPECT_NEAR(*app::default_over_front(study, 0), 1, 1e-12);
 }
