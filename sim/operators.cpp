@@ -88,9 +88,9 @@ LinkSums<D> sum_links(const Scene<D>& scene, const State<D>& state, const Worksp
 }
 
 // The weight of the free surface, half a spacing ahead of particle i, as a sample of its pressure, times that distance, 1/m: what balances
-// the fluid behind, so that d/n0 sum w r/|r|² over all samples has no part along the outward direction, as inside. Then the particle's own
-// pressure does not push it. (With the weight of the neighbours that are missing there, each projection fed the shortest waves of a surface:
-// velocities grew by 0.2 to 3 % a step on rows jittered by 0 to 10 % of a spacing, now by at most 0.1 %; docs/equations.md.) 0 away from it.
+// the fluid behind, so that d/n0 sum w r/|r|² over all samples has no part along the outward direction, as inside, and the particle's own
+// pressure does not push it. With the weight of the neighbours that are missing there instead, each projection over an uneven arrangement
+// makes the shortest waves of a surface grow. 0 away from it.
 template <int D>
 double surface_sample(const Scene<D>& scene, const Workspace<D>& work, Index i) {
   if (work.surface[i] != 1 || work.surface_outward[i].isZero()) return 0;

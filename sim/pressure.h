@@ -2,7 +2,8 @@
 // form of docs/equations.md).
 //
 // Volume balance of fluid particle i, with k = 2d/(lambda n0), V = l0^d, sums over visible fluid j and boundary particles b:
-//   sum_j k w (p_i - p_j)/rho + [surface: k (n0 - n_i) p_i/rho] = -(div v^n)_i/dt - D_i(a) + gamma (n_i - n0)/(n0 dt²)
+//   sum_j k w (p_i - p_j)/rho + [surface: k (n0 - n_i) p_i/rho] = -(div v^n)_i/dt - D_i(a) + gamma (n_i - n0)/(n0 dt²),   dt =
+//   projection_time
 // The divergence of the present velocity is the corrected one (exact for linear fields, wall at its true surface). The divergence of the
 // accelerations a (gravity, viscosity, boundary) is summed with the weights of the Laplacian itself,
 //   D_i(a) = sum_j k w (a_i + a_j)/2 . r + sum_b k w a_b . r,
@@ -21,7 +22,7 @@ void number_unknowns(const Scene<D>& scene, const State<D>& state, Workspace<D>&
 
 // Within what time the divergence of the present velocity is taken away, s: the step; beside a free surface no less than what flow and
 // body accelerations would let a step be, since each projection over an uneven arrangement feeds some of the shortest waves: with steps
-// kept far below that they outgrew what dissipates them (a standing wave of 20 spacings at a twentieth of its step ran away in one period).
+// kept far below that they would outgrow what dissipates them.
 template <int D>
 double projection_time(const Scene<D>& scene, const State<D>& state, double dt);
 
@@ -33,8 +34,8 @@ void pressure_poisson(const Scene<D>& scene, const State<D>& state, Workspace<D>
 template <int D>
 SolveReport solve_pressure(const Scene<D>& scene, State<D>& state, Workspace<D>& work);
 
-// grad p at every fluid particle: corrected differences inside (exact for linear pressure), sum (p_i + p_j) r at and beside a free surface
-// (conserves momentum; numerics-fluid 4(ii)4).
+// grad p at every fluid particle: corrected differences inside (exact for linear pressure), p = 0 half a spacing ahead of a free surface; in
+// spray sum (p_i + p_j) r, which conserves momentum (numerics-fluid 4(ii)4).
 template <int D>
 void pressure_gradients(const Scene<D>& scene, const State<D>& state, Workspace<D>& work);
 

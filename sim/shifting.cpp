@@ -73,9 +73,10 @@ void shift_particles(const Scene<D>& scene, State<D>& state, const Workspace<D>&
 template <int D>
 void add_subparticle_dissipation(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt) {
   const Index n = static_cast<Index>(state.size());
-  const double filter = scene.pressure->free_surface  // 1/s over n0
-                            ? scene.description.scheme.projection_filter / (projection_time(scene, state, dt) * scene.lattice.number_density)
-                            : 0;
+  const double filter =
+      scene.pressure->free_surface  // 1/s over n0
+          ? scene.description.scheme.projection_filter / (projection_time(scene, state, dt) * scene.lattice.number_density)
+          : 0;
   const double factor = scene.lattice.laplacian_factor() * scene.description.scheme.subparticle_dissipation * scene.lattice.spacing;
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index i = scene.first_fluid; i < n; ++i) {
@@ -148,9 +149,9 @@ void separate_particles(const Scene<D>& scene, State<D>& state, Workspace<D>& wo
   state.ledger.deepest_penetration = std::max(state.ledger.deepest_penetration, deepest);
 }
 
-#define INSTANTIATE(D)                                                                          \
-  template void shifting_displacement(const Scene<D>&, const State<D>&, Workspace<D>&, double); \
-  template void shift_particles(const Scene<D>&, State<D>&, const Workspace<D>&);               \
+#define INSTANTIATE(D)                                                                                \
+  template void shifting_displacement(const Scene<D>&, const State<D>&, Workspace<D>&, double);       \
+  template void shift_particles(const Scene<D>&, State<D>&, const Workspace<D>&);                     \
   template void add_subparticle_dissipation(const Scene<D>&, const State<D>&, Workspace<D>&, double); \
   template void separate_particles(const Scene<D>&, State<D>&, Workspace<D>&);
 INSTANTIATE(2)

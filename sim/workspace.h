@@ -46,7 +46,7 @@ struct Workspace {
   std::vector<double> number_density;      // n_i / n0
   std::vector<std::uint8_t> surface;       // 1 at the free surface, 2 next to it
   std::vector<Vector<D>> surface_outward;  // unit direction out of the fluid times -sum w r over fluid along it, m; 0 away from the surface
-  std::vector<double> surface_sample;     // 1/m, weight of the surface as a sample of the pressure (operators.cpp); 0 away from the surface
+  std::vector<double> surface_sample;  // 1/m, weight of the surface as a sample of the pressure (operators.cpp); 0 away from the surface
   std::vector<Tensor<D>> velocity_inverse;   // inverse moment matrix over fluid and surface points
   std::vector<Tensor<D>> pressure_inverse;   // inverse moment matrix over fluid alone
   std::vector<Tensor<D>> velocity_gradient;  // (grad v)_ab = d v_a / d x_b, 1/s

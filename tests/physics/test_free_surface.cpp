@@ -45,8 +45,8 @@ TEST(FreeSurface, AStandingWaveKeepsItsPeriodAndItsDecayDoesNotHangOnTheStep) {
     auto& particles = tank.description.particles;
     for (std::size_t i = static_cast<std::size_t>(tank.description.bodies[1].first); i < particles.position.size(); ++i) {
       const Vector<2> x = wave_number * particles.position[i];
-      particles.velocity[i] = speed / std::sinh(wave_number * length) *
-                              Vector<2>(-std::sin(x[0]) * std::cosh(x[1]), std::cos(x[0]) * std::sinh(x[1]));
+      particles.velocity[i] =
+          speed / std::sinh(wave_number * length) * Vector<2>(-std::sin(x[0]) * std::cosh(x[1]), std::cos(x[0]) * std::sinh(x[1]));
     }
     if (short_steps) tank.description.scheme.maximum_step = 4e-4;  // an eighth of its own
     const Scene<2> scene = make_scene(tank.description);
