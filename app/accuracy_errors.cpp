@@ -95,6 +95,7 @@ std::vector<Comparison> against(const std::vector<Answer>& mine, const std::vect
   for (const Answer& best : finest) {
     Comparison one;
     one.quantity = best.quantity, one.source = source, one.measured = not_told, one.reference = best.value, one.error = not_told;
+    one.scale = best.scale;
     const auto found = std::find_if(mine.begin(), mine.end(), [&](const Answer& a) { return a.quantity == best.quantity; });
     if (found != mine.end()) {
       one.measured = found->value;
@@ -117,7 +118,7 @@ std::vector<Comparison> against(const std::vector<Answer>& mine, const std::vect
   return result;
 }
 
-double magnitude(const Comparison& c) { return std::abs(c.reference) > 0 ? std::abs(c.reference) : 1; }
+double magnitude(const Comparison& c) { return c.scale > 0 ? c.scale : std::abs(c.reference) > 0 ? std::abs(c.reference) : 1; }
 
 std::vector<std::vector<Comparison>> with_references(const SceneFile& scene, const std::vector<std::filesystem::path>& files,
                                                      AccuracyStudy& study) {

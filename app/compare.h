@@ -16,6 +16,7 @@ struct Comparison {
   double time = 0;                     // s at which it was measured
   double measured = 0, reference = 0;  // SI; of a profile or curve: root mean squares
   double error = 0;  // relative: |measured - reference| / |reference|, or the L2 norm of a profile's difference over that of the reference
+  double scale = 0;  // SI, what error is relative to where that is not the reference itself; else 0
   double uncertainty = 0;                                   // of the reference, absolute, SI
   std::optional<double> limit;                              // relative error that passes
   std::vector<double> at, measured_curve, reference_curve;  // of a profile or curve: for plots
