@@ -126,9 +126,11 @@ template <int D>
 void add_laplacian_correction(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
   const Index n = static_cast<Index>(state.size());
   const double l0 = scene.lattice.spacing;
+  constexpr double unresolved = 1e4;  // cell Reynolds number from which no layer that viscosity makes is seen, however well it is summed
 #pragma omp parallel for schedule(dynamic, 128)
   for (Index i = scene.first_fluid; i < n; ++i) {
     if (state.kind[i] != Kind::fluid || work.surface[i] != 0 || work.number_density[i] < 0.8) continue;
+    if (scene.density[state.body[i]] * state.velocity[i].norm() * l0 > unresolved * work.viscosity[i]) continue;
     const std::int64_t first = work.neighbors.start[i], last = work.neighbors.start[i + 1];
     // The way to the neighbour, and the part of it at whose end its velocity holds.
     const auto sample = [&](std::int32_t j, Vector<D>& r) {
