@@ -81,7 +81,7 @@ void add_subparticle_dissipation(const Scene<D>& scene, const State<D>& state, W
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index i = scene.first_fluid; i < n; ++i) {
     if (state.kind[i] != Kind::fluid) continue;
-    Padded<D> sum = Padded<D>::Zero();
+    Padded<D> sum = Padded<D>::Zero(), filtered = Padded<D>::Zero();
     const DyadSum<D> gradient = work.gradient_columns[i];
     const Padded<D> here = work.position[i], velocity = work.velocity[i];
     for (std::int64_t k = work.neighbors.start[i]; k < work.neighbors.start[i + 1]; ++k) {
@@ -92,9 +92,11 @@ void add_subparticle_dissipation(const Scene<D>& scene, const State<D>& state, W
       const DyadSum<D>& other = work.gradient_columns[j];
       Padded<D> rough = jump;  // what the mean gradient does not explain of the jump
       for (int d = 0; d < D; ++d) rough -= half[d] * (gradient.column[d] + other.column[d]);
-      sum += w * (factor * jump.norm() + filter) * rough;
+      sum += w * jump.norm() * rough;
+      if (filter > 0) filtered += w * rough;
     }
-    work.acceleration[i] += sum.template head<D>();
+    work.acceleration[i] += factor * sum.template head<D>();
+    if (filter > 0) work.acceleration[i] += filter * filtered.template head<D>();
   }
 }
 
