@@ -90,7 +90,8 @@ bool has_one_density(const Scene<D>& scene) {
 
 template <int D>
 double projection_time(const Scene<D>& scene, const State<D>& state, double dt) {
-  return scene.pressure->free_surface ? std::max(dt, unrestricted_step(scene, state)) : dt;
+  const bool alone = !scene.solids && !scene.shells;  // what rings moves fluid within the step
+  return scene.pressure->free_surface && alone ? std::max(dt, unrestricted_step(scene, state)) : dt;
 }
 
 template <int D>

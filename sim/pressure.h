@@ -22,7 +22,7 @@ void number_unknowns(const Scene<D>& scene, const State<D>& state, Workspace<D>&
 
 // Within what time the divergence of the present velocity is taken away, s: the step; beside a free surface no less than what flow and
 // body accelerations would let a step be, since each projection over an uneven arrangement feeds some of the shortest waves: with steps
-// kept far below that they would outgrow what dissipates them.
+// kept far below that they would outgrow what dissipates them. With solids or leaflets the step always: fluid must give way to what rings.
 template <int D>
 double projection_time(const Scene<D>& scene, const State<D>& state, double dt);
 

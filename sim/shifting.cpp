@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/pressure.h"
+#include "sim/time_step.h"
 
 namespace sim {
 using Index = std::ptrdiff_t;
@@ -75,7 +75,7 @@ void add_subparticle_dissipation(const Scene<D>& scene, const State<D>& state, W
   const Index n = static_cast<Index>(state.size());
   const double filter =
       scene.pressure->free_surface  // 1/s over n0
-          ? scene.description.scheme.projection_filter / (projection_time(scene, state, dt) * scene.lattice.number_density)
+          ? scene.description.scheme.projection_filter / (std::max(dt, unrestricted_step(scene, state)) * scene.lattice.number_density)
           : 0;
   const double factor = scene.lattice.laplacian_factor() * scene.description.scheme.subparticle_dissipation * scene.lattice.spacing;
 #pragma omp parallel for schedule(dynamic, 256)

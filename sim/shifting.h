@@ -19,8 +19,8 @@ void shift_particles(const Scene<D>& scene, State<D>& state, const Workspace<D>&
 // velocity gradients do not explain,
 //   a_i += 2d/(lambda n0) sum w nu_ij [v_j - v_i - (grad v_i + grad v_j) r/2],  nu_ij = C l0 |v_j - v_i|.
 // It vanishes for any linear velocity field, conserves momentum, and damps what alternates from particle to particle. In fluids with a free
-// surface scheme.projection_filter of that part, with nu_ij's stead taken by a rate, goes every projection_time: over an uneven arrangement
-// the approximate projection lets some of the shortest waves grow a little each time (Rider 1998, Int. J. Numer. Meth. Fluids 28, 789).
+// surface a share of that part, scheme.projection_filter, also goes in every step of the flow's own size: over an uneven arrangement the
+// approximate projection lets some of the shortest waves grow a little each time (Rider 1998, Int. J. Numer. Meth. Fluids 28, 789).
 template <int D>
 void add_subparticle_dissipation(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt);
 
