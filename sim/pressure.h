@@ -2,8 +2,8 @@
 // form of docs/equations.md).
 //
 // Volume balance of fluid particle i, with k = 2d/(lambda n0), V = l0^d, sums over visible fluid j and boundary particles b:
-//   sum_j k w (p_i - p_j)/rho + [surface: k (n0 - n_i) p_i/rho] = -(div v^n)_i/dt - D_i(a) + gamma (n_i - n0)/(n0 dt²),   dt =
-//   projection_time
+//   sum_j k w (p_i - p_j)/rho + [surface: k (n0 - n_i) p_i/rho] = -(div v^n)_i/dt - D_i(a) + gamma (n_i - n0)/(n0 dt²)
+// with projection_time for dt.
 // The divergence of the present velocity is the corrected one (exact for linear fields, wall at its true surface). The divergence of the
 // accelerations a (gravity, viscosity, boundary) is summed with the weights of the Laplacian itself,
 //   D_i(a) = sum_j k w (a_i + a_j)/2 . r + sum_b k w a_b . r,

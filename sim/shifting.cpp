@@ -77,6 +77,7 @@ void add_subparticle_dissipation(const Scene<D>& scene, const State<D>& state, W
       scene.pressure->free_surface  // 1/s over n0
           ? scene.description.scheme.projection_filter / (std::max(dt, unrestricted_step(scene, state)) * scene.lattice.number_density)
           : 0;
+  if (filter == 0 && scene.description.scheme.subparticle_dissipation == 0) return;
   const double factor = scene.lattice.laplacian_factor() * scene.description.scheme.subparticle_dissipation * scene.lattice.spacing;
 #pragma omp parallel for schedule(dynamic, 256)
   for (Index i = scene.first_fluid; i < n; ++i) {

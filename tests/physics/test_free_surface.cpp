@@ -30,7 +30,7 @@ TEST(FreeSurface, WaterFromAnUnevenStartComesToRestAndStaysThere) {
     step(scene, state, work, 6 - state.time);
     if (state.time > 1) fastest = std::max(fastest, std::sqrt(2 * kinetic_energy(scene, state) / 225));
   }
-  EXPECT_LT(fastest, 0.03);  // a fortieth of sqrt(g H) / 2; one particle that falls by a spacing makes it 0.5 m/s
+  EXPECT_LT(fastest, 0.03);  // 2 % of sqrt(g H); one particle that falls by a spacing makes it 0.5 m/s
 }
 
 // Linear waves in water as deep as they are long: w² = g k tanh(k h) (Lamb, Hydrodynamics, 228). The uppermost row moves half a spacing
