@@ -28,9 +28,10 @@ void print_one(const nlohmann::json& one) {
       "  %.4g s a step (wall, median), %.3g microseconds of processor a particle and step, %.4g processor seconds a simulated second\n",
       one["seconds_a_step"].get<double>(), one["microseconds_a_particle_and_step"].get<double>(),
       one["processor_seconds_a_simulated_second"].get<double>());
-  std::printf("  %.3g pressure iterations a step, density error %.3g %% mean, %.3g %% rms, %.4g MiB at most\n",
+  std::printf("  %.3g pressure iterations a step, density error %.3g %% mean, %.3g %% rms, compression %.3g %% mean, %.4g MiB at most\n",
               one["pressure_iterations"].get<double>(), 100 * one.value("density_error_mean", 0.0),
-              100 * one.value("density_error_rms", 0.0), one["peak_memory"].get<double>() / 1048576);
+              100 * one.value("density_error_rms", 0.0), 100 * one.value("compression_mean", 0.0),
+              one["peak_memory"].get<double>() / 1048576);
   if (one.contains("stage_seconds"))
     for (const auto& [stage, seconds] : one["stage_seconds"].items())
       std::printf("    %-26s %8.2f ms a step\n", stage.c_str(), 1e3 * seconds.get<double>() / one["steps"].get<double>());

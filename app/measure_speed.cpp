@@ -36,14 +36,17 @@ double peak_memory() {
 
 struct DensityError {
   double mean = 0, square = 0, count = 0;
+  double compression = 0, all = 0;
 };
 
-// |n/n0 - 1| of fluid away from free surfaces and open ends.
+// |n/n0 - 1| of fluid away from free surfaces and open ends; max(n/n0 - 1, 0) of all.
 template <int D>
 void add_density_error(const sim::Scene<D>& scene, const sim::State<D>& state, sim::Workspace<D>& scratch, DensityError& sum) {
   sim::find_neighborhood(scene, state, scratch);
   for (std::size_t i = static_cast<std::size_t>(scene.first_fluid); i < state.size(); ++i) {
-    if (state.kind[i] != sim::Kind::fluid || scratch.surface[i] != 0) continue;
+    if (state.kind[i] != sim::Kind::fluid) continue;
+    sum.compression += std::max(scratch.number_density[i] - 1, 0.0), sum.all += 1;
+    if (scratch.surface[i] != 0) continue;
     const double error = std::abs(scratch.number_density[i] - 1);
     sum.mean += error, sum.square += error * error, sum.count += 1;
   }
@@ -89,8 +92,10 @@ json timed_steps(const sim::Scene<D>& scene, const SpeedOptions& options) {
               {"processor_seconds_a_simulated_second", processor / simulated},
               {"pressure_iterations", static_cast<double>(iterations) / steps},
               {"peak_memory", peak_memory()}};
-  if (density.count > 0)
+  if (density.count > 0) {
     result["density_error_mean"] = density.mean / density.count, result["density_error_rms"] = std::sqrt(density.square / density.count);
+    result["compression_mean"] = density.compression / density.all;
+  }
   for (std::size_t k = 0; k < work.stage_times.seconds.size(); ++k)
     if (work.stage_times.seconds[k] > 0) result["stage_seconds"][sim::stage_names[k]] = work.stage_times.seconds[k];
   return result;

@@ -250,6 +250,7 @@ sim::SchemeSettings read_scheme(const toml::table& table) {
       {"maximum_step", &S::maximum_step, not_negative},
       {"pressure_tolerance", &S::pressure_tolerance, {0, 0.1, true, false, "a number above 0, at most 0.1"}},
       {"density_blend", &S::density_blend, {0, 1, false, false, "0 to 1"}},
+      {"density_tolerance", &S::density_tolerance, {0, 0.1, false, false, "0 (off) to 0.1"}},
       {"shifting", &S::shifting, {0, 10, false, false, "0 (off) to 10"}},
       {"subparticle_dissipation", &S::subparticle_dissipation, {0, 10, false, false, "0 (off) to 10"}},
       {"projection_filter", &S::projection_filter, {0, 0.5, false, false, "0 (off) to 0.5"}},

@@ -149,7 +149,9 @@ std::vector<FreeKnob> free_knobs(const AccuracyStudy& study) {
       harmless = harmless && point.change[q] <= std::max(0.1 * error, noise);
     }
     const double before = cost_of(*base, study.clock), factor = cost_of(point, study.clock) / before;
-    if (!harmless || !(factor <= 0.95) || before < shortest_cost_that_tells) continue;
+    const bool less_work =
+        point.steps < base->steps || point.pressure_products < base->pressure_products || point.elastic_substeps < base->elastic_substeps;
+    if (!harmless || !less_work || !(factor <= 0.95) || before < shortest_cost_that_tells) continue;
     FreeKnob knob{point.curve, point.value, {}, factor};
     for (const std::string& setting : point.settings)
       if (setting.rfind("spacing=", 0) != 0) knob.settings.push_back(setting);

@@ -82,7 +82,8 @@ struct CostError {
 CostError cost_and_error(const AccuracyStudy& study, int quantity);
 
 // The loosest knobs that are free: settings off the ladder that cost less by a twentieth or more and change no answer by more than a tenth
-// of its error at that spacing (or by the noise). At most one a curve, the cheapest; time steps and tolerances alone.
+// of its error at that spacing (or by the noise), with fewer steps, products or sub-steps: else it is the clock that was lucky. At most one
+// a curve, the cheapest; time steps and tolerances alone.
 struct FreeKnob {
   std::string curve, value;
   std::vector<std::string> settings;  // without the spacing

@@ -169,8 +169,9 @@ struct SchemeSettings {  // every numerical knob; lengths in units of the spacin
   double maximum_step = 0;           // s; 0 = none beyond the physical limits; with leaflets in blood 0.1 s/m times l0
   double pressure_tolerance = 1e-5;  // relative residual
   int pressure_iterations = 500;
-  double density_blend = 0.01;  // gamma of the density correction in the source of the pressure equation
-  double shifting = 0.6;        // largest strength A of particle shifting; 0 = off
+  double density_blend = 0.01;      // gamma of the density correction in the source of the pressure equation
+  double density_tolerance = 7e-4;  // mean |n/n0 - 1| to which positions are mended after a step; free surfaces; 0 = off
+  double shifting = 0.6;            // largest strength A of particle shifting; 0 = off
   double subparticle_dissipation =
       -1;  // C of the dissipation for unresolved scales; 0 = off; -1 = chosen by make_scene: 0.3 with leaflets, else 0.1
   double projection_filter = 0.05;   // share of what neighbours' gradients do not explain of a velocity, taken off a step; free surfaces

@@ -7,6 +7,19 @@
 namespace sim {
 using Index = std::ptrdiff_t;
 
+namespace {
+
+// Strength of the shift of what rests. In a vessel with leaflets it stays where it is. Below a free surface it needs a little, as much in a
+// second however short the steps: what each shift lifts falls again, and waves would grow by it.
+template <int D>
+double shift_at_rest(const Scene<D>& scene, const State<D>& state, double dt) {
+  constexpr double a_little = 0.02;
+  if (scene.pressure->free_surface) return a_little * std::min(1.0, dt / unrestricted_step(scene, state));
+  return scene.sheet ? 0.0 : a_little;
+}
+
+}  // namespace
+
 template <int D>
 void shifting_displacement(const Scene<D>& scene, const State<D>& state, Workspace<D>& work, double dt) {
   const Index n = static_cast<Index>(state.size());
@@ -16,8 +29,7 @@ void shifting_displacement(const Scene<D>& scene, const State<D>& state, Workspa
   const double factor = l0 * l0 * scene.lattice.gradient_factor();
   const double radius = scene.lattice.radius, closest = scene.lattice.closest(), per_l0 = 1 / weight(l0, radius, closest);
   const auto first_fluid = static_cast<std::int32_t>(scene.first_fluid);
-  // A free surface that rests needs a little; in a full vessel what rests stays where it is.
-  const double least = scene.sheet && !scene.pressure->free_surface ? 0.0 : 0.02;
+  const double least = shift_at_rest(scene, state, dt);
   // The strongest shift of particle i. Where blood neither comes nor goes, no leaflet sheds it, viscosity orders it cell by cell (|v| l0/nu
   // below 2) and layers slide on one another (strain and spin alike), half of it keeps particles even; all of it stirs a pipe's blood until
   // it flows 1.9 % too fast. Where strain or spin prevails, particles cluster, and all of it is wanted.

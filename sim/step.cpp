@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "sim/density_projection.h"
 #include "sim/leaflet_coupling.h"
 #include "sim/ledger.h"
 #include "sim/number_density.h"
@@ -163,6 +164,7 @@ void step_fluid(const Scene<D>& scene, State<D>& state, Workspace<D>& work, std:
     if (scene.sheet) stick_in_gaps(state, work);
     shift_particles(scene, state, work);
     separate_particles(scene, state, work);
+    project_density(scene, state, work);
   });
   if (scene.sheet) timed(clocks, Stage::sides, [&] { keep_sides(scene, state, work); });
   account_fluid<D>(scene, state, work, from, dt);

@@ -126,7 +126,9 @@ template <int D>
 void add_laplacian_correction(const Scene<D>& scene, const State<D>& state, Workspace<D>& work) {
   const Index n = static_cast<Index>(state.size());
   const double l0 = scene.lattice.spacing;
-  constexpr double unresolved = 1e4;  // cell Reynolds number from which no layer that viscosity makes is seen, however well it is summed
+  // Cell Reynolds number from which no layer that viscosity makes is seen, however well it is summed: it grows to 3 % of l0 while the flow
+  // passes a cell.
+  constexpr double unresolved = 1e3;
 #pragma omp parallel for schedule(dynamic, 128)
   for (Index i = scene.first_fluid; i < n; ++i) {
     if (state.kind[i] != Kind::fluid || work.surface[i] != 0 || work.number_density[i] < 0.8) continue;

@@ -25,6 +25,26 @@ struct SheetElement {
   double offset = 0, reach = 0;           // normal . origin; largest distance of a corner from the centre, m
 };
 
+// A padded vector in single precision.
+template <int D>
+using ShortVector = Eigen::Matrix<float, Padded<D>::RowsAtCompileTime, 1>;
+
+// Density errors and their derivatives (density_projection.h). Rows are fluid rows, counted from the first; links lie where the row's
+// neighbours do, [neighbors.start, last).
+template <int D>
+struct DensityProblem {
+  std::vector<Padded<D>> position;           // m, of all rows, after the step's motion
+  std::vector<std::uint8_t> active;          // whether the row's error is to be mended
+  std::vector<float> error;                  // C = n/n0 - 1, then what is left of it, -
+  std::vector<ShortVector<D>> own, slope;    // dC_i/dx_i, and its share by link, 1/m
+  std::vector<std::int32_t> column;          // per link: row of the neighbour
+  std::vector<std::int64_t> last;            // per row: end of its links
+  std::vector<float> inverse_diagonal;       // m²
+  std::vector<float> multiplier, direction;  // m²
+  std::vector<float> product;                // -
+  std::vector<ShortVector<D>> displacement;  // m
+};
+
 template <int D>
 struct Workspace {
   // who is near whom
@@ -67,6 +87,8 @@ struct Workspace {
   std::vector<double> source, solution;
   Multigrid multigrid;
   ConjugateGradientScratch scratch;
+
+  DensityProblem<D> density;
 
   // the viscosity problem
   SymmetricMatrix viscous_matrix;

@@ -22,7 +22,7 @@ TEST(FreeFall, IsExactForAnIrregularDrop) {
     for (int i = -7; i <= 7; ++i)
       if (i * i + j * j <= 50) scene.add({0.01 * i + jitter(), 0.01 * j + jitter()});
   scene.description.gravity = Vector<2>(0, -9.81);
-  scene.description.scheme.density_blend = 0;  // the jitter's own density error would push
+  scene.description.scheme.density_blend = scene.description.scheme.density_tolerance = 0;  // the jitter's own density error would push
   scene.description.scheme.shifting = 0;
   scene.description.time.step = 1e-3;
   const Scene<2> built = make_scene(scene.description);
