@@ -42,16 +42,28 @@ double density_errors(const Scene<D>& scene, const State<D>& state, const Worksp
   return ordered_sum(rows, [&](std::size_t u) { return std::abs(static_cast<double>(problem.error[u])); }) / std::max(count, 1.0);
 }
 
-// J = dC/dx: row i has slope_ij = dC_i/dx_i by neighbour j for itself, -slope_ij for a fluid neighbour j; walls and ports keep their place.
+// The way from fluid row a to fluid row b, m.
+template <int D>
+ShortVector<D> way(const Scene<D>& scene, const DensityProblem<D>& problem, std::size_t a, std::size_t b) {
+  const ShortVector<D> r = problem.place[b] - problem.place[a];
+  if (!scene.space.any) return r;
+  const Vector<D> whole = r.template head<D>().template cast<double>();
+  return pad<D>(scene.space.difference(Vector<D>::Zero(), whole)).template cast<float>();
+}
+
+// J = dC/dx: dC_i/dx_i = sum_j steepness_ij (x_j - x_i) over all neighbours, and the opposite of its part by a fluid neighbour j is
+// dC_i/dx_j; walls and ports keep their place.
 template <int D>
 void density_slopes(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, DensityProblem<D>& problem) {
   const Index first = static_cast<Index>(scene.first_fluid), rows = static_cast<Index>(problem.error.size());
   const double radius = scene.lattice.radius, closest = scene.lattice.closest(), factor = radius / scene.lattice.number_density;
-  problem.own.resize(rows), problem.inverse_diagonal.resize(rows), problem.last.resize(rows);
-  problem.column.resize(work.neighbors.index.size()), problem.slope.resize(work.neighbors.index.size());
+  problem.own.resize(rows), problem.inverse_diagonal.resize(rows), problem.last.resize(rows), problem.place.resize(rows);
+  problem.column.resize(work.neighbors.index.size()), problem.steepness.resize(work.neighbors.index.size());
+  const Padded<D> origin = problem.position[first];  // single precision is for what lies near
 #pragma omp parallel for schedule(dynamic, 512)
   for (Index u = 0; u < rows; ++u) {
     const Index i = u + first;
+    problem.place[u] = (problem.position[i] - origin).template cast<float>();
     std::int64_t last = work.neighbors.start[i];
     Padded<D> own = Padded<D>::Zero();
     double squares = 0;
@@ -60,15 +72,15 @@ void density_slopes(const Scene<D>& scene, const State<D>& state, const Workspac
       const Padded<D> r = scene.space.difference(problem.position[i], problem.position[j]);
       const double distance = r.norm();
       if (!(distance < radius) || !(distance > closest)) continue;  // there the weight is 0, or does not grow any more
-      const Padded<D> slope = factor * (j < first ? scene.measure[j] : 1.0) / (distance * distance * distance) * r;
-      own += slope;
+      const double steepness = factor * (j < first ? scene.measure[j] : 1.0) / (distance * distance * distance);
+      own += steepness * r;
       if (j < first || state.kind[j] != Kind::fluid) continue;
       problem.column[last] = static_cast<std::int32_t>(j - first);
-      problem.slope[last++] = slope.template cast<float>();
-      squares += slope.squaredNorm();
+      problem.steepness[last++] = static_cast<float>(steepness);
+      squares += steepness * steepness * distance * distance;
     }
+    if (state.kind[i] != Kind::fluid) own.setZero(), last = work.neighbors.start[i];
     problem.last[u] = last;
-    if (state.kind[i] != Kind::fluid) own.setZero();
     problem.own[u] = own.template cast<float>();
     squares += own.squaredNorm();
     problem.inverse_diagonal[u] = problem.active[u] && squares > 0 ? static_cast<float>(1 / squares) : 0.0F;
@@ -77,35 +89,41 @@ void density_slopes(const Scene<D>& scene, const State<D>& state, const Workspac
 
 // J^T l
 template <int D>
-void displacements(const Workspace<D>& work, DensityProblem<D>& problem, std::int64_t first, const std::vector<float>& l) {
-  const Index rows = static_cast<Index>(problem.error.size());
+void displacements(const Scene<D>& scene, const Workspace<D>& work, DensityProblem<D>& problem, const std::vector<float>& l) {
+  const Index rows = static_cast<Index>(problem.error.size()), first = static_cast<Index>(scene.first_fluid);
   problem.displacement.resize(rows);
 #pragma omp parallel for schedule(static)
   for (Index u = 0; u < rows; ++u) {
     ShortVector<D> sum = l[u] * problem.own[u];
-    for (std::int64_t k = work.neighbors.start[u + first]; k < problem.last[u]; ++k) sum += l[problem.column[k]] * problem.slope[k];
+    for (std::int64_t k = work.neighbors.start[u + first]; k < problem.last[u]; ++k) {
+      const std::int32_t j = problem.column[k];
+      sum += l[j] * problem.steepness[k] * way(scene, problem, u, j);
+    }
     problem.displacement[u] = sum;
   }
 }
 
 // q = J d where something is to be mended, else 0
 template <int D>
-void density_changes(const Workspace<D>& work, const DensityProblem<D>& problem, std::int64_t first, std::vector<float>& q) {
-  const Index rows = static_cast<Index>(problem.error.size());
+void density_changes(const Scene<D>& scene, const Workspace<D>& work, const DensityProblem<D>& problem, std::vector<float>& q) {
+  const Index rows = static_cast<Index>(problem.error.size()), first = static_cast<Index>(scene.first_fluid);
 #pragma omp parallel for schedule(static)
   for (Index u = 0; u < rows; ++u) {
     ShortVector<D> sum = problem.own[u].cwiseProduct(problem.displacement[u]);
     if (problem.active[u])
-      for (std::int64_t k = work.neighbors.start[u + first]; k < problem.last[u]; ++k)
-        sum -= problem.slope[k].cwiseProduct(problem.displacement[problem.column[k]]);
+      for (std::int64_t k = work.neighbors.start[u + first]; k < problem.last[u]; ++k) {
+        const std::int32_t j = problem.column[k];
+        sum -= problem.steepness[k] * way(scene, problem, u, j).cwiseProduct(problem.displacement[j]);
+      }
     q[u] = problem.active[u] ? sum.sum() : 0.0F;
   }
 }
 
-// Conjugate gradients for J J^T l = C to a mean residual of `tolerance`.
+// Conjugate gradients for J J^T l = C to a mean residual of scheme.density_tolerance.
 template <int D>
-void solve_multipliers(const Workspace<D>& work, DensityProblem<D>& problem, std::int64_t first, double tolerance, DensityReport& report) {
+void solve_multipliers(const Scene<D>& scene, const Workspace<D>& work, DensityProblem<D>& problem, DensityReport& report) {
   constexpr int most = 20;
+  const double tolerance = scene.description.scheme.density_tolerance;
   const std::size_t rows = problem.error.size();
   std::vector<float>&l = problem.multiplier, &r = problem.error, &p = problem.direction, &q = problem.product;
   l.assign(rows, 0), p.assign(rows, 0), q.resize(rows);
@@ -117,8 +135,8 @@ void solve_multipliers(const Workspace<D>& work, DensityProblem<D>& problem, std
     const auto beta = static_cast<float>(report.iterations > 0 ? now / before : 0.0);
 #pragma omp parallel for schedule(static)
     for (Index u = 0; u < static_cast<Index>(rows); ++u) p[u] = scaled(u) + beta * p[u];
-    displacements(work, problem, first, p);
-    density_changes(work, problem, first, q);
+    displacements(scene, work, problem, p);
+    density_changes(scene, work, problem, q);
     const double curvature = ordered_sum(rows, [&](std::size_t u) { return static_cast<double>(p[u] * q[u]); });
     if (!(curvature > 0)) break;
     const auto alpha = static_cast<float>(now / curvature);
@@ -146,13 +164,13 @@ DensityReport project_density(const Scene<D>& scene, State<D>& state, Workspace<
   report.before = report.after = density_errors(scene, state, work, problem);
   if (report.before <= tolerance) return report;
   density_slopes(scene, state, work, problem);
-  solve_multipliers(work, problem, scene.first_fluid, tolerance, report);
-  displacements(work, problem, scene.first_fluid, problem.multiplier);
+  solve_multipliers(scene, work, problem, report);
+  displacements(scene, work, problem, problem.multiplier);
   const Index rows = static_cast<Index>(problem.error.size());
 #pragma omp parallel for schedule(static)
   for (Index u = 0; u < rows; ++u) {
-    const Vector<D> way = -problem.displacement[u].template head<D>().template cast<double>();
-    state.position[u + scene.first_fluid] += std::min(1.0, farthest / std::max(way.norm(), 1e-300)) * way;
+    const Vector<D> push = problem.displacement[u].template head<D>().template cast<double>();
+    state.position[u + scene.first_fluid] -= std::min(1.0, farthest / std::max(push.norm(), 1e-300)) * push;
   }
   return report;
 }

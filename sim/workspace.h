@@ -34,9 +34,11 @@ using ShortVector = Eigen::Matrix<float, Padded<D>::RowsAtCompileTime, 1>;
 template <int D>
 struct DensityProblem {
   std::vector<Padded<D>> position;           // m, of all rows, after the step's motion
+  std::vector<ShortVector<D>> place;         // m, of the fluid rows, from the first of them
   std::vector<std::uint8_t> active;          // whether the row's error is to be mended
   std::vector<float> error;                  // C = n/n0 - 1, then what is left of it, -
-  std::vector<ShortVector<D>> own, slope;    // dC_i/dx_i, and its share by link, 1/m
+  std::vector<ShortVector<D>> own;           // dC_i/dx_i, 1/m
+  std::vector<float> steepness;              // per link: dC_i/dx_i by it over the way to the neighbour, 1/m²
   std::vector<std::int32_t> column;          // per link: row of the neighbour
   std::vector<std::int64_t> last;            // per row: end of its links
   std::vector<float> inverse_diagonal;       // m²
