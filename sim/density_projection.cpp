@@ -157,7 +157,7 @@ void solve_multipliers(const Scene<D>& scene, const Workspace<D>& work, DensityP
 template <int D>
 DensityReport project_density(const Scene<D>& scene, State<D>& state, Workspace<D>& work) {
   DensityReport report;
-  const double tolerance = scene.description.scheme.density_tolerance, farthest = 0.1 * scene.lattice.spacing;
+  const double tolerance = scene.description.scheme.density_tolerance, farthest = 0.05 * scene.lattice.spacing;
   const bool alone = !scene.solids && !scene.shells;
   if (tolerance == 0 || !scene.pressure->free_surface || !alone) return report;
   DensityProblem<D>& problem = work.density;

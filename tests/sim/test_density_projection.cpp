@@ -50,14 +50,14 @@ TEST(DensityProjection, MendsAnUnevenArrangementToItsTolerance) {
     const std::vector<Vector<2>> start = state.position;
     const DensityReport report = project_density(scene, state, work);
     EXPECT_LE(report.after, scene.description.scheme.density_tolerance);
-    for (std::size_t i = 0; i < state.size(); ++i) EXPECT_LE((state.position[i] - start[i]).norm(), 0.1001 * scene.lattice.spacing);
+    for (std::size_t i = 0; i < state.size(); ++i) EXPECT_LE((state.position[i] - start[i]).norm(), 0.0501 * scene.lattice.spacing);
   }
   EXPECT_LT(mean_error(scene, state, work), 1.5 * scene.description.scheme.density_tolerance);
 }
 
-// J^T l pushes pairs apart by as much: no net displacement of a drop that touches nothing. Squeezed by 1 % in area, it widens again.
+// J^T l pushes pairs apart by as much: no net displacement of a drop that touches nothing. Squeezed by 0.7 % in area, it widens again.
 TEST(DensityProjection, KeepsTheCentreOfMassOfAFreeDropAndGivesItItsVolume) {
-  const Scene<2> scene = drop(14, 0.995, 0.005);
+  const Scene<2> scene = drop(12, 0.9965, 0.005);
   State<2> state = initial_state(scene);
   Workspace<2> work;
   const auto centre_and_area = [&] {
@@ -67,12 +67,12 @@ TEST(DensityProjection, KeepsTheCentreOfMassOfAFreeDropAndGivesItItsVolume) {
     return std::pair(Vector<2>(centre / static_cast<double>(state.size())), squares);
   };
   const auto [centre, area] = centre_and_area();
-  ASSERT_GT(mean_error(scene, state, work), 0.01);
+  ASSERT_GT(mean_error(scene, state, work), 0.007);
   for (int k = 0; k < 3; ++k) mean_error(scene, state, work), project_density(scene, state, work);
   const auto [after, larger] = centre_and_area();
   EXPECT_LT((after - centre).norm(), 1e-6 * scene.lattice.spacing);  // sums in single precision
-  EXPECT_GT(larger / area, 1.005);                                   // the outermost rows may keep 1 %
-  EXPECT_LT(larger / area, 1.001 / (0.995 * 0.995));
+  EXPECT_GT(larger / area, 1.0035);                                  // half of it: the outermost rows may keep 1 %
+  EXPECT_LT(larger / area, 1.001 / (0.9965 * 0.9965));
   EXPECT_LT(mean_error(scene, state, work), 0.001);
 }
 
