@@ -42,13 +42,21 @@ double density_errors(const Scene<D>& scene, const State<D>& state, const Worksp
   return ordered_sum(rows, [&](std::size_t u) { return std::abs(static_cast<double>(problem.error[u])); }) / std::max(count, 1.0);
 }
 
-// The way from fluid row a to fluid row b, m.
-template <int D>
-ShortVector<D> way(const Scene<D>& scene, const DensityProblem<D>& problem, std::size_t a, std::size_t b) {
-  const ShortVector<D> r = problem.place[b] - problem.place[a];
-  if (!scene.space.any) return r;
-  const Vector<D> whole = r.template head<D>().template cast<double>();
-  return pad<D>(scene.space.difference(Vector<D>::Zero(), whole)).template cast<float>();
+// The sum of term(k, way to its neighbour, m) over the links k of fluid row u: two sums at a time, which do not wait for each other.
+template <int D, bool periodic, class Term>
+ShortVector<D> sum_links(const Scene<D>& scene, const Workspace<D>& work, const DensityProblem<D>& problem, Index u, Term&& term) {
+  const ShortVector<D> here = problem.place[u];
+  const auto one = [&](std::int64_t k) -> ShortVector<D> {
+    const ShortVector<D> r = problem.place[problem.column[k]] - here;
+    if constexpr (!periodic) return term(k, r);
+    const Vector<D> whole = r.template head<D>().template cast<double>();
+    return term(k, pad<D>(scene.space.difference(Vector<D>::Zero(), whole)).template cast<float>());
+  };
+  std::int64_t k = work.neighbors.start[u + static_cast<Index>(scene.first_fluid)];
+  ShortVector<D> even = ShortVector<D>::Zero(), odd = even;
+  for (; k + 1 < problem.last[u]; k += 2) even += one(k), odd += one(k + 1);
+  if (k < problem.last[u]) even += one(k);
+  return even + odd;
 }
 
 // J = dC/dx: dC_i/dx_i = sum_j steepness_ij (x_j - x_i) over all neighbours, and the opposite of its part by a fluid neighbour j is
@@ -87,40 +95,36 @@ void density_slopes(const Scene<D>& scene, const State<D>& state, const Workspac
   }
 }
 
-// J^T l
-template <int D>
+// d = J^T l
+template <int D, bool periodic>
 void displacements(const Scene<D>& scene, const Workspace<D>& work, DensityProblem<D>& problem, const std::vector<float>& l) {
-  const Index rows = static_cast<Index>(problem.error.size()), first = static_cast<Index>(scene.first_fluid);
+  const Index rows = static_cast<Index>(problem.error.size());
   problem.displacement.resize(rows);
 #pragma omp parallel for schedule(static)
-  for (Index u = 0; u < rows; ++u) {
-    ShortVector<D> sum = l[u] * problem.own[u];
-    for (std::int64_t k = work.neighbors.start[u + first]; k < problem.last[u]; ++k) {
-      const std::int32_t j = problem.column[k];
-      sum += l[j] * problem.steepness[k] * way(scene, problem, u, j);
-    }
-    problem.displacement[u] = sum;
-  }
+  for (Index u = 0; u < rows; ++u)
+    problem.displacement[u] =
+        l[u] * problem.own[u] + sum_links<D, periodic>(scene, work, problem, u, [&](std::int64_t k, const ShortVector<D>& r) {
+          return ShortVector<D>(l[problem.column[k]] * problem.steepness[k] * r);
+        });
 }
 
 // q = J d where something is to be mended, else 0
-template <int D>
+template <int D, bool periodic>
 void density_changes(const Scene<D>& scene, const Workspace<D>& work, const DensityProblem<D>& problem, std::vector<float>& q) {
-  const Index rows = static_cast<Index>(problem.error.size()), first = static_cast<Index>(scene.first_fluid);
+  const Index rows = static_cast<Index>(problem.error.size());
 #pragma omp parallel for schedule(static)
   for (Index u = 0; u < rows; ++u) {
-    ShortVector<D> sum = problem.own[u].cwiseProduct(problem.displacement[u]);
-    if (problem.active[u])
-      for (std::int64_t k = work.neighbors.start[u + first]; k < problem.last[u]; ++k) {
-        const std::int32_t j = problem.column[k];
-        sum -= problem.steepness[k] * way(scene, problem, u, j).cwiseProduct(problem.displacement[j]);
-      }
-    q[u] = problem.active[u] ? sum.sum() : 0.0F;
+    q[u] = 0;
+    if (!problem.active[u]) continue;
+    const ShortVector<D> others = sum_links<D, periodic>(scene, work, problem, u, [&](std::int64_t k, const ShortVector<D>& r) {
+      return ShortVector<D>(problem.steepness[k] * r.cwiseProduct(problem.displacement[problem.column[k]]));
+    });
+    q[u] = (problem.own[u].cwiseProduct(problem.displacement[u]) - others).sum();
   }
 }
 
-// Conjugate gradients for J J^T l = C to a mean residual of scheme.density_tolerance.
-template <int D>
+// Conjugate gradients for J J^T l = C to a mean residual of scheme.density_tolerance; then d = J^T l.
+template <int D, bool periodic>
 void solve_multipliers(const Scene<D>& scene, const Workspace<D>& work, DensityProblem<D>& problem, DensityReport& report) {
   constexpr int most = 20;
   const double tolerance = scene.description.scheme.density_tolerance;
@@ -135,8 +139,8 @@ void solve_multipliers(const Scene<D>& scene, const Workspace<D>& work, DensityP
     const auto beta = static_cast<float>(report.iterations > 0 ? now / before : 0.0);
 #pragma omp parallel for schedule(static)
     for (Index u = 0; u < static_cast<Index>(rows); ++u) p[u] = scaled(u) + beta * p[u];
-    displacements(scene, work, problem, p);
-    density_changes(scene, work, problem, q);
+    displacements<D, periodic>(scene, work, problem, p);
+    density_changes<D, periodic>(scene, work, problem, q);
     const double curvature = ordered_sum(rows, [&](std::size_t u) { return static_cast<double>(p[u] * q[u]); });
     if (!(curvature > 0)) break;
     const auto alpha = static_cast<float>(now / curvature);
@@ -150,6 +154,7 @@ void solve_multipliers(const Scene<D>& scene, const Workspace<D>& work, DensityP
     before = now;
     ++report.iterations;
   }
+  displacements<D, periodic>(scene, work, problem, l);
 }
 
 }  // namespace
@@ -164,8 +169,10 @@ DensityReport project_density(const Scene<D>& scene, State<D>& state, Workspace<
   report.before = report.after = density_errors(scene, state, work, problem);
   if (report.before <= tolerance) return report;
   density_slopes(scene, state, work, problem);
-  solve_multipliers(scene, work, problem, report);
-  displacements(scene, work, problem, problem.multiplier);
+  if (scene.space.any)
+    solve_multipliers<D, true>(scene, work, problem, report);
+  else
+    solve_multipliers<D, false>(scene, work, problem, report);
   const Index rows = static_cast<Index>(problem.error.size());
 #pragma omp parallel for schedule(static)
   for (Index u = 0; u < rows; ++u) {
