@@ -57,6 +57,7 @@ TEST(RunBudget, TakesFreeKnobsAlong) {
   AccuracyPoint knob = study.points[1];
   knob.curve = "scheme.cfl", knob.value = "0.4", knob.settings = {"spacing=0.02", "scheme.cfl=0.4"}, knob.wall = {0.0625},
   knob.change = {0.001};
+  study.points[1].steps = 200, knob.steps = 100;
   study.points.push_back(knob);
   const auto choice = app::choose_for_time(study, 0.5, 1, 2, as_wanted);
   EXPECT_NEAR(choice.spacing, 0.01, 1e-6);  // half the cost: the finest run fits
