@@ -16,9 +16,13 @@ double error_to_mend(double error, bool beside_surface) {
   return beside_surface ? std::clamp(error - unevenness, 0.0, largest) : std::clamp(error, -largest, largest);
 }
 
-// The errors of the fluid rows, and their mean size over those that are asked, -.
+// How many fluid rows are asked for their error, and its mean size over them, -.
+struct ErrorSize {
+  double count = 0, mean = 0;
+};
+
 template <int D>
-double density_errors(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, DensityProblem<D>& problem) {
+ErrorSize density_errors(const Scene<D>& scene, const State<D>& state, const Workspace<D>& work, DensityProblem<D>& problem) {
   const Index first = static_cast<Index>(scene.first_fluid), n = static_cast<Index>(state.size());
   const double radius = scene.lattice.radius, closest = scene.lattice.closest();
   problem.position.resize(n), problem.error.resize(n - first), problem.active.resize(n - first);
@@ -39,7 +43,8 @@ double density_errors(const Scene<D>& scene, const State<D>& state, const Worksp
   }
   const auto rows = static_cast<std::size_t>(n - first);
   const double count = ordered_sum(rows, [&](std::size_t u) { return problem.active[u] ? 1.0 : 0.0; });
-  return ordered_sum(rows, [&](std::size_t u) { return std::abs(static_cast<double>(problem.error[u])); }) / std::max(count, 1.0);
+  const double sum = ordered_sum(rows, [&](std::size_t u) { return std::abs(static_cast<double>(problem.error[u])); });
+  return {count, sum / std::max(count, 1.0)};
 }
 
 // The sum of term(k, way to its neighbour, m) over the links k of fluid row u: two sums at a time, which do not wait for each other.
@@ -125,13 +130,12 @@ void density_changes(const Scene<D>& scene, const Workspace<D>& work, const Dens
 
 // Conjugate gradients for J J^T l = C to a mean residual of scheme.density_tolerance; then d = J^T l.
 template <int D, bool periodic>
-void solve_multipliers(const Scene<D>& scene, const Workspace<D>& work, DensityProblem<D>& problem, DensityReport& report) {
+void solve_multipliers(const Scene<D>& scene, const Workspace<D>& work, DensityProblem<D>& problem, double asked, DensityReport& report) {
   constexpr int most = 20;
   const double tolerance = scene.description.scheme.density_tolerance;
   const std::size_t rows = problem.error.size();
   std::vector<float>&l = problem.multiplier, &r = problem.error, &p = problem.direction, &q = problem.product;
   l.assign(rows, 0), p.assign(rows, 0), q.resize(rows);
-  const double active = ordered_sum(rows, [&](std::size_t u) { return problem.active[u] ? 1.0 : 0.0; });
   const auto scaled = [&](std::size_t u) { return problem.inverse_diagonal[u] * r[u]; };
   double before = 0;
   while (report.after > tolerance && report.iterations < most) {
@@ -150,7 +154,7 @@ void solve_multipliers(const Scene<D>& scene, const Workspace<D>& work, DensityP
                                  r[u] -= alpha * q[u];
                                  return std::abs(static_cast<double>(r[u]));
                                }) /
-                   active;
+                   asked;
     before = now;
     ++report.iterations;
   }
@@ -166,13 +170,14 @@ DensityReport project_density(const Scene<D>& scene, State<D>& state, Workspace<
   const bool alone = !scene.solids && !scene.shells;
   if (tolerance == 0 || !scene.pressure->free_surface || !alone) return report;
   DensityProblem<D>& problem = work.density;
-  report.before = report.after = density_errors(scene, state, work, problem);
+  const ErrorSize error = density_errors(scene, state, work, problem);
+  report.before = report.after = error.mean;
   if (report.before <= tolerance) return report;
   density_slopes(scene, state, work, problem);
   if (scene.space.any)
-    solve_multipliers<D, true>(scene, work, problem, report);
+    solve_multipliers<D, true>(scene, work, problem, error.count, report);
   else
-    solve_multipliers<D, false>(scene, work, problem, report);
+    solve_multipliers<D, false>(scene, work, problem, error.count, report);
   const Index rows = static_cast<Index>(problem.error.size());
 #pragma omp parallel for schedule(static)
   for (Index u = 0; u < rows; ++u) {

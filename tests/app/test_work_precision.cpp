@@ -14,7 +14,8 @@ using app::AccuracyStudy;
 
 AccuracyPoint point(const std::string& curve, double spacing, double seconds, double error) {
   AccuracyPoint p;
-  p.curve = curve, p.spacing = spacing, p.wall = {seconds}, p.processor = {seconds}, p.error = {error}, p.steps = 10, p.pressure_products = 100;
+  p.curve = curve, p.spacing = spacing, p.wall = {seconds}, p.processor = {seconds}, p.error = {error}, p.steps = 10,
+  p.pressure_products = 100;
   return p;
 }
 

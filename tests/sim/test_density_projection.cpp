@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "sim/fluid_scenes.h"
-#include "sim/number_density.h"
 #include "sim/step.h"
 
 namespace sim {
@@ -45,7 +44,7 @@ TEST(DensityProjection, MendsAnUnevenArrangementToItsTolerance) {
   Workspace<2> work;
   const double before = mean_error(scene, state, work);
   ASSERT_GT(before, 0.005);
-  for (int k = 0; k < 3; ++k) {  // Newton: an error of 2 % leaves 0.02 % by curvature alone
+  for (int k = 0; k < 3; ++k) {  // Newton's steps: what curvature leaves of one goes with the next
     mean_error(scene, state, work);
     const std::vector<Vector<2>> start = state.position;
     const DensityReport report = project_density(scene, state, work);
